@@ -1,0 +1,19 @@
+# Everything here is a Debian 12 package of cmake/packages.txt.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenMP REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+
+# SuiteSparse has no CMake configuration on Debian 12.
+find_path(SUITESPARSE_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_library(UMFPACK_LIBRARY umfpack REQUIRED)
+find_library(OPENBLAS_LIBRARY openblas REQUIRED)
+add_library(couture_suitesparse INTERFACE)
+target_include_directories(couture_suitesparse SYSTEM INTERFACE
+    $<BUILD_INTERFACE:${SUITESPARSE_INCLUDE_DIR}>)
+target_link_libraries(couture_suitesparse INTERFACE
+    ${CHOLMOD_LIBRARY} ${UMFPACK_LIBRARY} ${OPENBLAS_LIBRARY})
+
+pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc)
