@@ -1,0 +1,124 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "iga/core/function.h"
+#include "iga/mechanics/elastic_constants.h"
+
+namespace couture::iga {
+
+enum class Physics { elasticity, poisson };
+
+/// How a plane problem stands for a solid. Axisymmetric: x is the radius, y the axis; integrals
+/// go over the whole ring (2 pi r), so resultants and energies are those of the full body.
+enum class Kinematics { solid, plane_strain, plane_stress, axisymmetric };
+
+/// Patches that a material or a load holds for; empty: all.
+using PatchList = std::vector<int>;
+
+struct Material {
+    std::string name;
+    PatchList patches;
+    /// Elasticity.
+    ElasticStiffness stiffness = ElasticStiffness::Zero();
+    /// Strain per degree along the axes.
+    Vector3 thermal_expansion = Vector3::Zero();
+    /// Poisson: flux = -conductivity * gradient.
+    double conductivity = 1.0;
+};
+
+/// Common to conditions and loads.
+struct Entry {
+    /// Where it was written ("part.toml:14"), for messages; may be empty.
+    std::string source;
+    /// Load case; empty: acts in every case.
+    std::string load_case;
+};
+
+/// Prescribed displacement on a named set; for Poisson the value is component 0.
+struct Support : Entry {
+    std::string on;
+    /// Nothing: free in that direction.
+    std::array<std::optional<Function>, 3> components;
+    /// Displacement along the outward normal; the set must be plane (0: symmetry).
+    std::optional<Function> normal;
+};
+
+/// Force per area in the axes' directions; for Poisson the inward flux is component 0. On a set of
+/// edges: force per length.
+struct Traction : Entry {
+    std::string on;
+    std::array<Function, 3> components;
+};
+
+/// Force per area against the outward normal.
+struct Pressure : Entry {
+    std::string on;
+    Function value;
+};
+
+/// Force per volume; for Poisson the source is component 0.
+struct BodyForce : Entry {
+    PatchList patches;
+    std::array<Function, 3> components;
+};
+
+/// A concentrated force at a point of the body, or at each corner of a named set of corners.
+struct PointLoad : Entry {
+    std::string on;
+    std::optional<Vector3> at;
+    Vector3 force = Vector3::Zero();
+};
+
+enum class Spread {
+    traction,       ///< uniform traction; a moment as the traction linear in position
+    control_points  ///< equally on the control points
+};
+
+/// Total force and total moment about the set's centroid on a named set of sides.
+struct Resultant : Entry {
+    std::string on;
+    Vector3 force = Vector3::Zero();
+    Vector3 moment = Vector3::Zero();
+    Spread spread = Spread::traction;
+};
+
+/// Springs to the ground: traction = -stiffness * displacement, along the normal and in the axes'
+/// directions, per area.
+struct Foundation : Entry {
+    std::string on;
+    std::optional<Function> normal;
+    std::array<std::optional<Function>, 3> components;
+};
+
+/// Temperature above the strain-free state.
+struct Temperature : Entry {
+    PatchList patches;
+    Function change;
+};
+
+/// What is solved on a multipatch; independent of its discretisation.
+struct Problem {
+    Physics physics = Physics::elasticity;
+    Kinematics kinematics = Kinematics::solid;
+    /// Of plane strain and plane stress: all integrals are multiplied by it.
+    double thickness = 1.0;
+    std::vector<Material> materials;
+    std::vector<Support> supports;
+    std::vector<Foundation> foundations;
+    std::vector<Traction> tractions;
+    std::vector<Pressure> pressures;
+    std::vector<BodyForce> body_forces;
+    std::vector<PointLoad> point_loads;
+    std::vector<Resultant> resultants;
+    std::vector<Temperature> temperatures;
+    /// Combination -> load case -> factor.
+    std::map<std::string, std::map<std::string, double>> combinations;
+    /// Names of the load cases in order of appearance; one unnamed case if none is named.
+    [[nodiscard]] std::vector<std::string> load_cases() const;
+};
+
+}  // namespace couture::iga

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "iga/mechanics/problem.h"
+#include "iga/post/field.h"
+#include "iga/spline/point_inversion.h"
+
+namespace couture::iga {
+
+/// Strain and stress of one point, Voigt order 11, 22, 33, 23, 13, 12, engineering shear.
+struct StressState {
+    Vector<6> strain;
+    Vector<6> stress;
+};
+
+[[nodiscard]] double von_mises(const Vector<6>& stress);
+/// Descending.
+[[nodiscard]] Vector3 principal_stresses(const Vector<6>& stress);
+[[nodiscard]] Matrix<3> to_tensor(const Vector<6>& stress);
+
+/// Strain and stress of a displacement at a point of a patch; thermal strains of `load_case`
+/// are taken off. For Poisson `stress` holds the flux in its first three places.
+template <int d>
+[[nodiscard]] StressState stress_at(const Problem& problem, const Field<d>& displacement,
+                                    const std::string& load_case, int patch, const Vector<d>& xi);
+
+/// The stress as a smooth field, by L2 projection onto the displacement's space: n_dofs x 6.
+/// Continuous over all patches: at a jump of material it shows the mean.
+template <int d>
+[[nodiscard]] MatrixX project_stress(const Problem& problem, const Field<d>& displacement,
+                                     const std::string& load_case);
+
+/// Gauss points of the elements: coordinates (n x 3) and stresses (n x 6).
+struct GaussPointStresses {
+    MatrixX points;
+    MatrixX stresses;
+};
+template <int d>
+[[nodiscard]] GaussPointStresses gauss_point_stresses(const Problem& problem,
+                                                      const Field<d>& displacement,
+                                                      const std::string& load_case);
+
+/// Where in which patch a point of space lies.
+template <int d>
+struct Location {
+    int patch = 0;
+    Vector<d> xi;
+};
+
+/// Finds points in the body.
+template <int d>
+class Locator {
+  public:
+    explicit Locator(const MultiPatch<d>& geometry);
+    /// The patch and parameter of a point; nothing if no patch is within `tolerance`.
+    [[nodiscard]] std::optional<Location<d>> find(const Vector3& point, double tolerance) const;
+    /// The nearest place of the body and its distance.
+    [[nodiscard]] std::pair<Location<d>, double> nearest(const Vector3& point) const;
+
+  private:
+    std::vector<PointInversion<d>> patches_;
+    int dimension_;
+};
+
+}  // namespace couture::iga

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "iga/core/timer.h"
+#include "iga/linalg/sparse_solver.h"
+#include "iga/mechanics/problem.h"
+#include "iga/post/field.h"
+
+namespace couture::iga {
+
+struct LinearStaticOptions {
+    SolverOptions solver;
+    /// Gauss points per direction and element; nothing: degree + 1 of the space.
+    std::optional<int> n_gauss_points;
+};
+
+/// One load case or combination.
+template <int d>
+struct CaseResult {
+    std::string name;
+    /// n_dofs x components.
+    Field<d> displacement;
+    /// 1/2 u K u - (thermal terms): the strain energy.
+    double energy = 0.0;
+    /// Sum of external forces (loads) and of reactions of each support set, 3 components.
+    Vector3 applied_force = Vector3::Zero();
+    std::map<std::string, Vector3> reactions;
+    /// |applied + reactions + foundation| / max(|applied|, |reactions|).
+    double balance = 0.0;
+    /// Force of the foundations on the body.
+    Vector3 foundation_force = Vector3::Zero();
+};
+
+template <int d>
+struct LinearStaticResult {
+    std::vector<CaseResult<d>> cases;
+    SolveReport solver;
+    std::vector<Phase> phases;
+    int n_unknowns = 0;
+    int n_elements = 0;
+};
+
+/// Solves the linear problem on a space, all load cases with one factorization, then the
+/// combinations.
+///
+/// @throws InputError     for a load or a support that can't hold (names it)
+/// @throws TopologyError  for a set that does not exist
+/// @throws GeometryError  if a quadrature point sees det J change sign: patch, place, value
+/// @throws SolverError    if rigid-body motions are free (names them), or the solver fails
+template <int d>
+[[nodiscard]] LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space,
+                                                        const Problem& problem,
+                                                        const LinearStaticOptions& options = {});
+
+}  // namespace couture::iga
