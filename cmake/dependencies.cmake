@@ -17,3 +17,7 @@ target_link_libraries(couture_suitesparse INTERFACE
     ${CHOLMOD_LIBRARY} ${UMFPACK_LIBRARY} ${OPENBLAS_LIBRARY})
 
 pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc)
+
+# None of these pulls in HDF5: PETSc brings the OpenMPI flavour, VTK's is the serial one.
+find_package(VTK 9.1 REQUIRED COMPONENTS
+    CommonCore CommonDataModel IOXML)
