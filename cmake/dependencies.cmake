@@ -1,4 +1,5 @@
-# Everything here is a Debian 12 package of cmake/packages.txt.
+# Everything that Couture is linked with, found here and nowhere else: the installed package reads
+# this file too. All are Debian 12 packages of cmake/packages.txt.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(OpenMP REQUIRED)
 find_package(PkgConfig REQUIRED)
@@ -10,11 +11,14 @@ find_path(SUITESPARSE_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_library(UMFPACK_LIBRARY umfpack REQUIRED)
 find_library(OPENBLAS_LIBRARY openblas REQUIRED)
-add_library(couture_suitesparse INTERFACE)
-target_include_directories(couture_suitesparse SYSTEM INTERFACE
-    $<BUILD_INTERFACE:${SUITESPARSE_INCLUDE_DIR}>)
-target_link_libraries(couture_suitesparse INTERFACE
-    ${CHOLMOD_LIBRARY} ${UMFPACK_LIBRARY} ${OPENBLAS_LIBRARY})
+mark_as_advanced(SUITESPARSE_INCLUDE_DIR CHOLMOD_LIBRARY UMFPACK_LIBRARY OPENBLAS_LIBRARY)
+if(NOT TARGET couture_suitesparse)
+    # Imported, so that an installed Couture names it instead of the paths of this machine.
+    add_library(couture_suitesparse INTERFACE IMPORTED)
+    target_include_directories(couture_suitesparse INTERFACE ${SUITESPARSE_INCLUDE_DIR})
+    target_link_libraries(couture_suitesparse INTERFACE
+        ${CHOLMOD_LIBRARY} ${UMFPACK_LIBRARY} ${OPENBLAS_LIBRARY})
+endif()
 
 pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc)
 

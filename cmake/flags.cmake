@@ -1,11 +1,22 @@
-# Flags of our own code; third parties come in as SYSTEM.
+# Flags of our own code; third parties come in as SYSTEM. Linked PRIVATE by every target. Installed
+# without content: the flags are no business of an outside program.
 add_library(couture_flags INTERFACE)
-target_compile_options(couture_flags INTERFACE
+# Left out on purpose: -ffast-math. GCC's default -ffp-contract=fast stays: fused multiply-adds are
+# half of the peak and change no result from run to run. That results do not depend on the number
+# of threads is due to the loops, which give every sum to one thread in a fixed order.
+target_compile_options(couture_flags INTERFACE $<BUILD_INTERFACE:
     -Wall -Wextra -Wpedantic -Wshadow -Werror
+    -fno-math-errno
     $<$<CONFIG:Release>:-O3>
-    $<$<AND:$<BOOL:${COUTURE_NATIVE}>,$<CONFIG:Release>>:-march=native>)
-# One rounding everywhere: results do not depend on how loops were split among threads.
-target_compile_options(couture_flags INTERFACE -fno-math-errno)
+    $<$<AND:$<BOOL:${COUTURE_NATIVE}>,$<CONFIG:Release>>:-march=native>>)
+
+# Eigen aligns as the instruction set asks: 16 bytes in general, 32 with AVX, 64 with AVX-512, and
+# what was allocated under one setting cannot be freed under another. We compile with
+# -march=native, a program that uses the installed libraries need not: both are held to the same
+# values, PUBLIC on couture_iga. 64 on the heap is the largest that Eigen can ask for; fixed-size
+# members keep AVX's 32.
+set(COUTURE_ABI_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=32)
+
 if(CMAKE_BUILD_TYPE STREQUAL "Debug")
     add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -O1)
     add_link_options(-fsanitize=address,undefined)
