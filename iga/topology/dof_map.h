@@ -23,10 +23,20 @@ template <int d>
                                   const std::vector<TensorSpace<d>>& spaces,
                                   double tolerance = 1e-9);
 
-/// Sides and edges of the patches that collapse to a lower dimension, with the directions in
-/// which they do; for messages.
+/// A side or edge on which the geometry has a lower dimension.
 template <int d>
-[[nodiscard]] std::vector<PatchEntity<d>> collapsed_entities(const MultiPatch<d>& geometry,
-                                                             double tolerance = 1e-9);
+struct CollapsedEntity {
+    PatchEntity<d> entity;
+    /// Free directions in which every line of control points is one point.
+    std::vector<int> directions;
+    /// "patch 0 side 0:low collapses in direction 1".
+    [[nodiscard]] std::string name() const;
+};
+
+/// Sides and edges of the patches that collapse, for messages: sides first; an edge only if it is
+/// not part of a side that collapses in the same direction.
+template <int d>
+[[nodiscard]] std::vector<CollapsedEntity<d>> collapsed_entities(const MultiPatch<d>& geometry,
+                                                                 double tolerance = 1e-9);
 
 }  // namespace couture::iga

@@ -37,6 +37,24 @@ struct MultiPatch {
     [[nodiscard]] const BoundarySet<d>& boundary_set(const std::string& name) const;
 };
 
+/// How far two conforming sides are from being one.
+struct SideGap {
+    /// Largest distance between control points that should coincide.
+    double distance = 0.0;
+    /// Largest relative difference of weights after scaling to a common factor.
+    double weight = 0.0;
+};
+template <int d>
+[[nodiscard]] SideGap side_gap(const Patch<d>& first, const Patch<d>& second,
+                               const Interface<d>& interface);
+
+/// The part of `check` that looks at no control points: existing patches and sides, none in two
+/// interfaces, conforming degrees and knots, existing entities in boundary sets.
+///
+/// @throws TopologyError  naming the first offending patch, side or set
+template <int d>
+void check_combinatorics(const MultiPatch<d>& multipatch);
+
 /// Checks counts, that every interface names existing sides and none twice, that interfaces
 /// conform in degree, knots, and (within `tolerance` of the size) in control points and weights up
 /// to a factor, and that boundary sets name existing entities.
@@ -52,7 +70,8 @@ template <int d>
 [[nodiscard]] std::string signature(const MultiPatch<d>& multipatch);
 
 /// Volume (area for d = 2): integral of |det J| with degree-exact Gauss rules for B-splines
-/// (rational patches: enough points for 1e-12 on quarter circles).
+/// (rational patches: as many points as the spread of the weights asks for; 1e-13 on quarter
+/// circles). Surfaces in space: their area.
 template <int d>
 [[nodiscard]] double volume(const MultiPatch<d>& multipatch);
 

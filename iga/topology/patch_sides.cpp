@@ -44,6 +44,17 @@ PatchEntity<d> make_side(int patch, int side) {
 }
 
 template <int d>
+std::array<int, d - 1> tangential_directions(int side) {
+    std::array<int, d - 1> directions{};
+    for (int k = 0, i = 0; k < d; ++k) {
+        if (k != side_direction(side)) {
+            directions[i++] = k;
+        }
+    }
+    return directions;
+}
+
+template <int d>
 std::vector<PatchEntity<d>> entities_of_patch(int patch, int dimension) {
     int n_codes = 1;
     for (int k = 0; k < d; ++k) {
@@ -134,16 +145,35 @@ std::vector<SideMap<d>> all_side_maps() {
 }
 
 template <int d>
+std::string to_string(const Interface<d>& interface) {
+    return make_side<d>(interface.first_patch, interface.first_side).name() + " and " +
+           make_side<d>(interface.second_patch, interface.second_side).name();
+}
+
+template <int d>
+std::optional<int> nonconforming_direction(const TensorSpace<d>& first_space,
+                                           const TensorSpace<d>& second_space,
+                                           const Interface<d>& interface) {
+    const std::array<int, d - 1> first = tangential_directions<d>(interface.first_side);
+    const std::array<int, d - 1> second = tangential_directions<d>(interface.second_side);
+    for (int i = 0; i < d - 1; ++i) {
+        const KnotVector& here = first_space.knots[first[i]];
+        const KnotVector& there = second_space.knots[second[interface.map.axis[i]]];
+        const bool conforms = interface.map.reversed[i] ? here.conforms_to(there.reversed())
+                                                        : here.conforms_to(there);
+        if (!conforms) {
+            return i;
+        }
+    }
+    return std::nullopt;
+}
+
+template <int d>
 std::vector<int> matching_functions(const TensorSpace<d>& second_space,
                                     const Interface<d>& interface) {
     const std::array<int, d> n = second_space.sizes();
     const int normal = side_direction(interface.second_side);
-    std::array<int, d - 1> tangents{};
-    for (int k = 0, i = 0; k < d; ++k) {
-        if (k != normal) {
-            tangents[i++] = k;
-        }
-    }
+    const std::array<int, d - 1> tangents = tangential_directions<d>(interface.second_side);
     // Sizes in the order of the first side's tangential directions.
     std::array<int, d - 1> size{};
     int n_functions = 1;
@@ -171,9 +201,13 @@ std::vector<int> matching_functions(const TensorSpace<d>& second_space,
     template struct PatchEntity<d>;                                                              \
     template struct SideMap<d>;                                                                  \
     template PatchEntity<d> make_side(int, int);                                                 \
+    template std::array<int, d - 1> tangential_directions<d>(int);                               \
     template std::vector<PatchEntity<d>> entities_of_patch(int, int);                            \
     template std::vector<int> functions_on<d>(const TensorSpace<d>&, const std::array<End, d>&); \
     template std::vector<SideMap<d>> all_side_maps();                                            \
+    template std::string to_string(const Interface<d>&);                                         \
+    template std::optional<int> nonconforming_direction(                                         \
+        const TensorSpace<d>&, const TensorSpace<d>&, const Interface<d>&);                      \
     template std::vector<int> matching_functions(const TensorSpace<d>&, const Interface<d>&);
 COUTURE_INSTANTIATE(2)
 COUTURE_INSTANTIATE(3)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <compare>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ constexpr int side_direction(int side) { return side / 2; }
 constexpr bool side_is_high(int side) { return side % 2 == 1; }
 template <int d>
 constexpr int n_sides = 2 * d;
+
+/// Directions other than the side's own, ascending.
+template <int d>
+[[nodiscard]] std::array<int, d - 1> tangential_directions(int side);
 
 /// All entities of a patch with `dimension` free directions: 2 d sides for dimension d - 1, ...
 template <int d>
@@ -75,6 +80,18 @@ struct Interface {
     SideMap<d> map = SideMap<d>::identity();
     bool operator==(const Interface&) const = default;
 };
+
+/// "patch 0 side 0:high and patch 1 side 2:low".
+template <int d>
+[[nodiscard]] std::string to_string(const Interface<d>& interface);
+
+/// Tangential direction of the first side (from 0 to d - 2) in which the two spaces differ in
+/// degree or knots, up to an affine change and the interface's orientation; nothing if they
+/// conform.
+template <int d>
+[[nodiscard]] std::optional<int> nonconforming_direction(const TensorSpace<d>& first_space,
+                                                         const TensorSpace<d>& second_space,
+                                                         const Interface<d>& interface);
 
 /// Function numbers on the second side in the order of the first side's own: entry k is the
 /// function of the second patch that coincides with functions_on(first side)[k].

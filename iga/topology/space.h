@@ -28,7 +28,7 @@ class Space {
     [[nodiscard]] const VectorX& weights(int patch) const { return weights_[patch]; }
     /// Global number of each function of the patch.
     [[nodiscard]] const std::vector<int>& dofs(int patch) const { return dof_map_.global[patch]; }
-    /// Global numbers of the functions that do not vanish on the entity.
+    /// Global numbers of the functions that do not vanish on the entity, increasing.
     [[nodiscard]] std::vector<int> dofs_on(const PatchEntity<d>& entity) const;
     /// True when each patch's functions are exactly those of the geometry.
     [[nodiscard]] bool is_isoparametric() const { return is_isoparametric_; }
