@@ -1,8 +1,8 @@
 #pragma once
 
 #include "iga/mechanics/problem.h"
-#include "iga/post/field.h"
 #include "iga/spline/point_inversion.h"
+#include "iga/topology/field.h"
 
 namespace couture::iga {
 

@@ -6,7 +6,7 @@
 #include "iga/core/timer.h"
 #include "iga/linalg/sparse_solver.h"
 #include "iga/mechanics/problem.h"
-#include "iga/post/field.h"
+#include "iga/topology/field.h"
 
 namespace couture::iga {
 

@@ -1,5 +1,6 @@
 // A quarter of a ring, refined, evaluated and written, by a program outside of Couture's tree that
-// is compiled for any processor. Matrices and their memory go both ways across the library's border.
+// is compiled for any processor. Matrices and their memory go both ways across the library's
+// border.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -40,8 +41,8 @@ int main() try {
         is_good &= is_near("radius at half thickness", x.norm(), 1.5);
     }
     const MatrixX J = same.jacobian(Vector2(0.0, 0.0));
-    is_good &= is_near("det J at the corner", J(0, 0) * J(1, 1) - J(0, 1) * J(1, 0),
-                       std::sqrt(2.0));
+    is_good &=
+        is_near("det J at the corner", J(0, 0) * J(1, 1) - J(0, 1) * J(1, 0), std::sqrt(2.0));
     return is_good ? 0 : 1;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
