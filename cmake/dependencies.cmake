@@ -25,3 +25,8 @@ pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc)
 # None of these pulls in HDF5: PETSc brings the OpenMPI flavour, VTK's is the serial one.
 find_package(VTK 9.1 REQUIRED COMPONENTS
     CommonCore CommonDataModel IOXML)
+
+# The OpenMPI flavour of HDF5: PETSc links it.
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
+find_package(pugixml REQUIRED)
+find_package(nlohmann_json REQUIRED)

@@ -1,0 +1,164 @@
+#include "io/spline_file.h"
+
+#include <algorithm>
+
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "iga/topology/interface_match.h"
+#include "io/atomic_file.h"
+#include "io/geopdes_text.h"
+#include "io/gismo_xml.h"
+#include "io/mfem_mesh.h"
+#include "io/raw_splines.h"
+
+namespace couture::io {
+
+namespace {
+
+enum class Format { gismo, mfem, geopdes };
+
+constexpr const char* known_formats =
+    "G+Smo XML (.xml), MFEM NURBS mesh (.mesh), GeoPDEs text (.txt)";
+
+std::string name_of(Format format) {
+    switch (format) {
+        case Format::gismo:
+            return "G+Smo XML";
+        case Format::mfem:
+            return "MFEM NURBS mesh";
+        case Format::geopdes:
+            return "GeoPDEs text";
+    }
+    return "";
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+/// From the extension, for writing and where the content says nothing.
+Format format_of_extension(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".xml") {
+        return Format::gismo;
+    }
+    if (extension == ".mesh") {
+        return Format::mfem;
+    }
+    if (extension == ".txt") {
+        return Format::geopdes;
+    }
+    throw FileError("{}: unknown extension '{}'; expected one of {}", path.string(), extension,
+                    known_formats);
+}
+
+/// From the first bytes, else from the extension.
+Format format_of(const std::filesystem::path& path, std::string_view text) {
+    const std::size_t start = text.find_first_not_of(" \t\r\n");
+    if (start == std::string_view::npos) {
+        throw FileError("{}: the file is empty; expected one of {}", path.string(), known_formats);
+    }
+    const std::string_view content = text.substr(start);
+    if (content.starts_with("<") || content.starts_with("\xEF\xBB\xBF<")) {
+        return Format::gismo;
+    }
+    if (content.starts_with("MFEM")) {
+        return Format::mfem;
+    }
+    if (content.starts_with("# nurbs")) {
+        return Format::geopdes;
+    }
+    if (content.starts_with("MeshVersionFormatted")) {
+        throw FileError(
+            "{}: a Medit mesh of triangles, tetrahedra or hexahedra; expected splines: {}",
+            path.string(), known_formats);
+    }
+    return format_of_extension(path);
+}
+
+/// Checks the interfaces of the file or finds those it does not list.
+template <int d>
+void complete(const std::string& file, iga::MultiPatch<d>& multipatch, bool lists_interfaces,
+              std::vector<std::string>& notes) {
+    std::vector<iga::TensorSpace<d>> before;
+    for (const iga::Patch<d>& patch : multipatch.patches) {
+        before.push_back(patch.space());
+    }
+    try {
+        if (lists_interfaces) {
+            iga::make_conforming(multipatch);
+        } else {
+            const std::vector<std::string> warnings = iga::find_interfaces(multipatch);
+            notes.push_back(fmt::format("the file lists no interfaces; {} found",
+                                        multipatch.interfaces.size()));
+            notes.insert(notes.end(), warnings.begin(), warnings.end());
+        }
+        iga::check(multipatch);
+    } catch (const Error& error) {
+        throw FileError("{}: {}", file, error.what());
+    }
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (before[i] != multipatch.patches[i].space()) {
+            notes.push_back(fmt::format(
+                "patch {} was refined from {} to {} control points to conform to its neighbours", i,
+                fmt::join(before[i].sizes(), " x "),
+                fmt::join(multipatch.patches[i].space().sizes(), " x ")));
+        }
+    }
+}
+
+}  // namespace
+
+SplineFile read_splines(const std::filesystem::path& path) {
+    const std::string text = read_text(path);
+    const std::string file = path.string();
+    const Format format = format_of(path, text);
+    RawSplines raw;
+    switch (format) {
+        case Format::gismo:
+            raw = read_gismo_xml(file, text);
+            break;
+        case Format::mfem:
+            raw = read_mfem_mesh(file, text);
+            break;
+        case Format::geopdes:
+            raw = read_geopdes_text(file, text);
+            break;
+    }
+    std::visit(
+        [&](auto& multipatch) { complete(file, multipatch, raw.lists_interfaces, raw.notes); },
+        raw.multipatch);
+    return {std::move(raw.multipatch), name_of(format), std::move(raw.notes)};
+}
+
+void write_splines(const std::filesystem::path& path, const AnyMultiPatch& multipatch) {
+    const Format format = format_of_extension(path);
+    std::vector<std::string> notes;
+    std::visit(
+        [&](const auto& splines) {
+            if (splines.n_patches() == 0) {
+                throw InputError("write_splines: {}: no patches; expected at least one",
+                                 path.string());
+            }
+            switch (format) {
+                case Format::gismo:
+                    write_text(path, to_gismo_xml(splines));
+                    break;
+                case Format::mfem:
+                    write_text(path, to_mfem_mesh(splines, notes));
+                    break;
+                case Format::geopdes:
+                    write_text(path, to_geopdes_text(splines));
+                    break;
+            }
+        },
+        multipatch);
+    for (const std::string& note : notes) {
+        log::warn(fmt::format("{}: {}", path.string(), note));
+    }
+}
+
+}  // namespace couture::io
