@@ -283,7 +283,7 @@ std::string to_mfem_mesh(const iga::MultiPatch<d>& multipatch, std::vector<std::
         }
         text += "\n";
     }
-    text += "\n" + boundary_lines(multipatch, elements, notes);
+    text += fmt::format("\n{}", boundary_lines(multipatch, elements, notes));
     const std::vector<std::string> edges = edge_lines(multipatch, elements);
     text += fmt::format("edges\n{}\n{}\nvertices\n{}\n\npatches\n\n", edges.size(),
                         fmt::join(edges, ""), n_vertices);
