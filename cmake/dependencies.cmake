@@ -23,6 +23,7 @@ endif()
 pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc)
 # PETSc's headers need mpi.h, which its pkg-config file leaves out.
 pkg_check_modules(MPI REQUIRED IMPORTED_TARGET mpi-c)
+pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser)
 
 # None of these pulls in HDF5: PETSc brings the OpenMPI flavour, VTK's is the serial one.
 find_package(VTK 9.1 REQUIRED COMPONENTS

@@ -1,0 +1,246 @@
+#include "io/deck.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "iga/core/error.h"
+#include "io/atomic_file.h"
+#include "io/deck_readers.h"
+#include "io/quantity.h"
+#include "io/toml_file.h"
+
+namespace couture::io {
+
+namespace fs = std::filesystem;
+
+double Probe::allowed_error() const {
+    return std::max(tolerance * std::abs(expect.value_or(0.0)), absolute_tolerance);
+}
+
+bool Probe::passes(double value) const {
+    return !expect || std::abs(value - *expect) <= allowed_error();
+}
+
+void for_each_entry(Section& parent, const std::string& name,
+                    const std::function<void(Section&)>& read) {
+    const TomlNode* list = parent.find(name);
+    if (list == nullptr) {
+        return;
+    }
+    const std::string prefix =
+        parent.title().empty() ? "" : parent.title().substr(1, parent.title().size() - 2) + ".";
+    const std::string title = fmt::format("[[{}{}]]", prefix, name);
+    if (list->kind == TomlNode::Kind::table) {
+        parent.mistake(
+            name, fmt::format("[{0}] may occur several times: write {1}", prefix + name, title));
+        return;
+    }
+    const bool is_list =
+        list->kind == TomlNode::Kind::array &&
+        std::all_of(list->items.begin(), list->items.end(),
+                    [](const TomlNode& item) { return item.kind == TomlNode::Kind::table; });
+    if (!is_list) {
+        parent.mistake(
+            name, fmt::format("'{}' is {}, expected sections {}", name, list->kind_name(), title));
+        return;
+    }
+    for (const TomlNode& item : list->items) {
+        Section section(item, title, parent.context());
+        read(section);
+        section.finish();
+    }
+}
+
+void for_each_named(Section& parent, const std::string& name,
+                    const std::function<void(const std::string& key, Section&)>& read) {
+    const TomlNode* table = parent.find(name);
+    if (table == nullptr) {
+        return;
+    }
+    if (table->kind != TomlNode::Kind::table) {
+        parent.mistake(name, fmt::format("'{0}' is {1}, expected sections [{0}.NAME]", name,
+                                         table->kind_name()));
+        return;
+    }
+    for (const auto& [key, node] : table->entries) {
+        if (node.kind != TomlNode::Kind::table) {
+            parent.context().mistakes.add(
+                node.place, fmt::format("[{0}] holds named sections only: put '{1}' into "
+                                        "[{0}.NAME]",
+                                        name, key));
+            continue;
+        }
+        Section section(node, fmt::format("[{}.{}]", name, key), parent.context());
+        read(key, section);
+        section.finish();
+    }
+}
+
+namespace {
+
+/// Calls `read` for [name] if it is there.
+void for_section(Section& top, const std::string& name, const std::function<void(Section&)>& read) {
+    const TomlNode* table = top.find(name);
+    if (table == nullptr) {
+        return;
+    }
+    if (table->kind != TomlNode::Kind::table) {
+        top.mistake(
+            name, fmt::format("'{0}' is {1}, expected a section [{0}]", name, table->kind_name()));
+        return;
+    }
+    Section section(*table, fmt::format("[{}]", name), top.context());
+    read(section);
+    section.finish();
+}
+
+void read_units(Section& section, UnitSystem& units) {
+    if (const auto name = section.text("system")) {
+        try {
+            units = UnitSystem(*name);
+        } catch (const InputError& error) {
+            section.mistake("system", error.what());
+        }
+    }
+}
+
+void read_geometry(Section& section, const fs::path& folder, GeometrySource& geometry) {
+    geometry.source = section.place().source;
+    const auto file = section.text("file");
+    const auto part = section.text("part");
+    if (section.has("file") == section.has("part")) {
+        section.mistake(section.has("file") ? "part" : "",
+                        "[geometry] needs either 'file' (a spline file) or 'part' (a built-in "
+                        "part)");
+    }
+    if (file) {
+        geometry.file = folder / *file;
+        if (!fs::exists(geometry.file)) {
+            section.mistake("file", fmt::format("there is no file {} (paths are relative to the "
+                                                "deck)",
+                                                geometry.file.string()));
+        } else if (fs::is_directory(geometry.file)) {
+            section.mistake("file",
+                            fmt::format("{} is a folder, not a file", geometry.file.string()));
+        }
+    }
+    geometry.part = part.value_or("");
+    const auto read_table = [&](const std::string& key,
+                                const std::function<void(Section&, const std::string&)>& read) {
+        const TomlNode* table = section.find(key);
+        if (table == nullptr) {
+            return;
+        }
+        if (table->kind != TomlNode::Kind::table) {
+            section.mistake(key, fmt::format("'{0}' is {1}, expected a section [geometry.{0}]", key,
+                                             table->kind_name()));
+            return;
+        }
+        Section inner(*table, fmt::format("[geometry.{}]", key), section.context());
+        for (const auto& [name, node] : table->entries) {
+            read(inner, name);
+        }
+    };
+    read_table("parameters", [&](Section& inner, const std::string& name) {
+        // Texts with a unit are lengths; angles and counts are plain numbers.
+        geometry.parameters[name] = inner.number(name, dimensions::length).value_or(0.0);
+    });
+    read_table("sets", [&](Section& inner, const std::string& name) {
+        geometry.sets[name] = inner.texts(name);
+    });
+    if (!geometry.parameters.empty() && geometry.part.empty()) {
+        section.mistake("parameters", "[geometry.parameters] belongs to 'part'; a file has none");
+    }
+}
+
+void read_discretization(Section& section, Discretization& discretization) {
+    discretization.source = section.place().source;
+    constexpr int max_degree = 8;
+    constexpr int max_points = 20;
+    discretization.degree = section.integer("degree", 1, max_degree);
+    discretization.elements = section.integers("elements", 1);
+    if (discretization.elements.size() > 3) {
+        section.mistake("elements", fmt::format("'elements' of [discretization] has {} numbers, "
+                                                "expected one, or one per direction",
+                                                discretization.elements.size()));
+    }
+    discretization.n_gauss_points = section.integer("gauss_points", 1, max_points);
+}
+
+void read_solver(Section& section, iga::SolverOptions& solver) {
+    solver.name = section.choice("linear", iga::linear_solver_names()).value_or(solver.name);
+    solver.tolerance =
+        section.number("tolerance", dimensions::none, {.low = 0.0, .high = 1.0, .is_open = true})
+            .value_or(solver.tolerance);
+    solver.max_iterations =
+        section.integer("max_iterations", 1, 100'000'000).value_or(solver.max_iterations);
+    solver.petsc_options = section.text("petsc_options").value_or("");
+    constexpr double megabyte = 1024.0 * 1024.0;
+    if (const auto limit = section.number("memory_limit", dimensions::none, positive)) {
+        solver.memory_limit = static_cast<std::size_t>(*limit * megabyte);
+    }
+}
+
+void read_output(Section& section, Deck& deck) {
+    OutputOptions& output = deck.output;
+    const bool is_elasticity = deck.problem.physics == iga::Physics::elasticity;
+    output.vtu = section.flag("vtu").value_or(output.vtu);
+    output.linear = section.flag("linear").value_or(output.linear);
+    output.gauss_points = section.flag("gauss_points").value_or(output.gauss_points);
+    output.png = section.flag("png").value_or(output.png);
+    output.png_quantity = is_elasticity ? "von_mises" : "potential";
+    std::vector<std::string> names;
+    for (const QuantityInfo& info : quantities(is_elasticity)) {
+        if (info.place == QuantityInfo::Place::point) {
+            names.push_back(info.name);
+        }
+    }
+    output.png_quantity = section.choice("png_quantity", names).value_or(output.png_quantity);
+    output.png_scale = section.number("png_scale", dimensions::none, not_negative);
+    read_probes(section, deck.problem, deck.probes);
+}
+
+}  // namespace
+
+Deck parse_deck(const std::string& text, const fs::path& path,
+                const std::vector<std::string>& overrides) {
+    const std::string name = path.filename().string();
+    TomlNode document = parse_toml(text, name);
+    Deck deck;
+    deck.path = path;
+    deck.text = text;
+    for (const std::string& assignment : overrides) {
+        override_value(document, assignment);
+        deck.text += fmt::format("\n# --set {}", assignment);
+    }
+    if (document.entries.empty()) {
+        throw InputError("{}: the deck is empty; it needs at least [geometry] and a material",
+                         name);
+    }
+    DeckContext context;
+    document.place = {};
+    document.place.source = name;
+    Section top(document, "", context);
+    deck.title = top.text("title").value_or(path.stem().string());
+    for_section(top, "units", [&](Section& section) { read_units(section, context.units); });
+    deck.units = context.units;
+    if (top.require("geometry", "the section [geometry] with 'file' or 'part'") != nullptr) {
+        for_section(top, "geometry", [&](Section& section) {
+            read_geometry(section, path.parent_path(), deck.geometry);
+        });
+    }
+    for_section(top, "discretization",
+                [&](Section& section) { read_discretization(section, deck.discretization); });
+    read_problem(top, deck.problem);
+    for_section(top, "solver", [&](Section& section) { read_solver(section, deck.solver); });
+    for_section(top, "output", [&](Section& section) { read_output(section, deck); });
+    top.finish();
+    context.mistakes.throw_if_any();
+    return deck;
+}
+
+Deck read_deck(const fs::path& path, const std::vector<std::string>& overrides) {
+    return parse_deck(read_text(path), path, overrides);
+}
+
+}  // namespace couture::io

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "iga/linalg/sparse_solver.h"
+#include "iga/mechanics/problem.h"
+#include "io/units.h"
+
+namespace couture::io {
+
+/// Exactly one of `file` and `part` is set.
+struct GeometrySource {
+    /// Absolute, or relative to the working folder.
+    std::filesystem::path file;
+    std::string part;
+    std::map<std::string, double> parameters;
+    /// Sets of the deck: name -> entities as in PatchEntity::name ("patch 3 side 0:low").
+    std::map<std::string, std::vector<std::string>> sets;
+    /// Where [geometry] was written.
+    std::string source;
+};
+
+struct Discretization {
+    /// Nothing: that of the geometry.
+    std::optional<int> degree;
+    /// Per direction; one number: the same in all; empty: those of the geometry.
+    std::vector<int> elements;
+    std::optional<int> n_gauss_points;
+    std::string source;
+};
+
+/// A number to be reported, and checked if a value is expected.
+struct Probe {
+    std::string source;
+    std::string name;
+    std::string quantity;
+    /// Where: a point, or a patch and a parameter, or a set; scalars have none.
+    std::optional<Vector3> at;
+    std::optional<int> patch;
+    std::vector<double> xi;
+    std::string on;
+    /// Empty: the only case.
+    std::string load_case;
+    std::optional<double> expect;
+    /// The larger of tolerance |expect| and `absolute_tolerance` is allowed.
+    double tolerance = 1e-3;
+    double absolute_tolerance = 0.0;
+
+    /// Largest accepted |value - expect|.
+    [[nodiscard]] double allowed_error() const;
+    /// True if nothing is expected. NaN never passes where something is.
+    [[nodiscard]] bool passes(double value) const;
+};
+
+struct OutputOptions {
+    bool vtu = true;
+    /// Linear cells instead of exact spline cells.
+    bool linear = false;
+    bool gauss_points = false;
+    bool png = false;
+    /// What a picture is coloured by.
+    std::string png_quantity = "von_mises";
+    /// Displacements are drawn this many times larger; nothing: a tenth of the part at most.
+    std::optional<double> png_scale;
+};
+
+/// One job.
+struct Deck {
+    std::filesystem::path path;
+    /// As read, overrides in comment lines below.
+    std::string text;
+    std::string title;
+    UnitSystem units;
+    GeometrySource geometry;
+    Discretization discretization;
+    iga::Problem problem;
+    iga::SolverOptions solver;
+    OutputOptions output;
+    std::vector<Probe> probes;
+};
+
+/// Reads and checks a deck by itself (the geometry is not opened). Implausible values warn.
+///
+/// @param overrides  "section.key=value", see override_value
+/// @throws FileError   if it can't be read
+/// @throws InputError  with all that is wrong: file, line, the text with a caret, the rule, the
+///                     nearest name
+[[nodiscard]] Deck read_deck(const std::filesystem::path& path,
+                             const std::vector<std::string>& overrides = {});
+
+/// The same for a text at hand; `path` names it and is what paths in it are relative to.
+[[nodiscard]] Deck parse_deck(const std::string& text, const std::filesystem::path& path,
+                              const std::vector<std::string>& overrides = {});
+
+}  // namespace couture::io
