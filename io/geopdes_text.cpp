@@ -224,7 +224,7 @@ RawSplines read_geopdes_text(const std::string& file, std::string_view text) {
     }
     const std::string_view version = title.word("v.2.1");
     if (version != "v.2.1" && version != "v.2.0") {
-        title.fail("found version {}; expected v.2.1 or v.2.0", quoted(version));
+        title.fail("found version {}; expected v.2.1 or v.2.0", in_quotes(version));
     }
     TextCursor words(file, text, '#');
     int n_parameters = 0;

@@ -169,7 +169,7 @@ Patches list_patches(const Document& document, const xml_node& multipatch,
         }
     } else {
         throw FileError("{}: patches of type {}; expected 'id_range' or 'id_index'",
-                        document.where(node), quoted(type));
+                        document.where(node), in_quotes(type));
     }
     std::map<int, xml_node> geometry_of_id;
     for (const xml_node& geometry : all) {
@@ -278,7 +278,7 @@ RawSplines read_multipatch(const Document& document, const xml_node& node, const
         if (parameters_of(geometry) != d) {
             throw FileError(
                 "{}: geometry of type {}; expected 'TensorBSpline{}' or 'TensorNurbs{}'",
-                document.where(geometry), quoted(geometry.attribute("type").value()), d, d);
+                document.where(geometry), in_quotes(geometry.attribute("type").value()), d, d);
         }
         multipatch.patches.push_back(read_patch<d>(document, geometry));
         if (multipatch.patches.back().dimension() != multipatch.dimension()) {
@@ -308,7 +308,7 @@ Patches take_all(const std::vector<xml_node>& all, std::vector<std::string>& not
             result.geometries.push_back(geometry);
         } else {
             notes.push_back(fmt::format("a geometry of type {} was left out",
-                                        quoted(geometry.attribute("type").value())));
+                                        in_quotes(geometry.attribute("type").value())));
         }
     }
     return result;

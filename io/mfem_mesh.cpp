@@ -163,7 +163,7 @@ std::vector<iga::Patch<d>> read_patches(TextCursor& words, int n_patches) {
         const bool is_cartesian = kind == "controlpoints_cartesian";
         if (!is_cartesian && kind != "controlpoints" && kind != "controlpoints_homogeneous") {
             words.fail("found {}; expected 'controlpoints' or 'controlpoints_cartesian'",
-                       quoted(kind));
+                       in_quotes(kind));
         }
         const long count = count_control_points<d>(words.where(), space.sizes());
         const std::vector<double> numbers =
@@ -374,7 +374,7 @@ std::vector<iga::Patch<d>> read_global_nodes(TextCursor& words, const Skeleton<d
     words.expect("FiniteElementCollection:");
     const std::string_view collection = words.word("a NURBS collection");
     if (!collection.starts_with("NURBS")) {
-        words.fail("found {}; expected a NURBS collection", quoted(collection));
+        words.fail("found {}; expected a NURBS collection", in_quotes(collection));
     }
     words.expect("VDim:");
     const int dimension = words.integer("the number of coordinates", d, 3);
@@ -424,7 +424,7 @@ RawSplines read_body(TextCursor& words) {
         words.fail(
             "found {}; expected 'patches' or 'knotvectors' (refined, periodic and "
             "non-conforming meshes are not read)",
-            quoted(found));
+            in_quotes(found));
     }
     words.expect_end("the mesh");
     add_boundary_sets<d>(skeleton, multipatch);
@@ -442,7 +442,7 @@ RawSplines read_mfem_mesh(const std::string& file, std::string_view text) {
     }
     const std::string_view version = words.word("v1.0");
     if (version != "v1.0" && version != "v1.1") {
-        words.fail("found version {}; expected v1.0 or v1.1", quoted(version));
+        words.fail("found version {}; expected v1.0 or v1.1", in_quotes(version));
     }
     words.expect("dimension");
     return words.integer("the dimension", 2, 3) == 2 ? read_body<2>(words) : read_body<3>(words);

@@ -8,17 +8,20 @@
 #include "io/atomic_file.h"
 #include "io/geopdes_text.h"
 #include "io/gismo_xml.h"
+#include "io/hdf5_store.h"
 #include "io/mfem_mesh.h"
 #include "io/raw_splines.h"
+#include "io/yeti_files.h"
 
 namespace couture::io {
 
 namespace {
 
-enum class Format { gismo, mfem, geopdes };
+enum class Format { gismo, mfem, geopdes, yeti, hdf5 };
 
 constexpr const char* known_formats =
-    "G+Smo XML (.xml), MFEM NURBS mesh (.mesh), GeoPDEs text (.txt)";
+    "G+Smo XML (.xml), MFEM NURBS mesh (.mesh), GeoPDEs text (.txt), yeti (.inp with .NB), Couture "
+    "HDF5 (.h5)";
 
 std::string name_of(Format format) {
     switch (format) {
@@ -28,6 +31,10 @@ std::string name_of(Format format) {
             return "MFEM NURBS mesh";
         case Format::geopdes:
             return "GeoPDEs text";
+        case Format::yeti:
+            return "yeti inp/NB";
+        case Format::hdf5:
+            return "Couture HDF5";
     }
     return "";
 }
@@ -51,6 +58,12 @@ Format format_of_extension(const std::filesystem::path& path) {
     if (extension == ".txt") {
         return Format::geopdes;
     }
+    if (extension == ".inp") {
+        return Format::yeti;
+    }
+    if (extension == ".h5") {
+        return Format::hdf5;
+    }
     throw FileError("{}: unknown extension '{}'; expected one of {}", path.string(), extension,
                     known_formats);
 }
@@ -71,6 +84,9 @@ Format format_of(const std::filesystem::path& path, std::string_view text) {
     if (content.starts_with("# nurbs")) {
         return Format::geopdes;
     }
+    if (content.starts_with("Couture splines")) {
+        return Format::hdf5;
+    }
     if (content.starts_with("MeshVersionFormatted")) {
         throw FileError(
             "{}: a Medit mesh of triangles, tetrahedra or hexahedra; expected splines: {}",
@@ -78,6 +94,9 @@ Format format_of(const std::filesystem::path& path, std::string_view text) {
     }
     return format_of_extension(path);
 }
+
+/// The other file of a yeti model.
+std::filesystem::path nb_path(std::filesystem::path path) { return path.replace_extension(".NB"); }
 
 /// Checks the interfaces of the file or finds those it does not list.
 template <int d>
@@ -127,6 +146,12 @@ SplineFile read_splines(const std::filesystem::path& path) {
         case Format::geopdes:
             raw = read_geopdes_text(file, text);
             break;
+        case Format::yeti:
+            raw = read_yeti(file, text, nb_path(path).string(), read_text(nb_path(path)));
+            break;
+        case Format::hdf5:
+            raw = read_hdf5(file, text);
+            break;
     }
     std::visit(
         [&](auto& multipatch) { complete(file, multipatch, raw.lists_interfaces, raw.notes); },
@@ -152,6 +177,15 @@ void write_splines(const std::filesystem::path& path, const AnyMultiPatch& multi
                     break;
                 case Format::geopdes:
                     write_text(path, to_geopdes_text(splines));
+                    break;
+                case Format::yeti: {
+                    const YetiTexts texts = to_yeti(splines);
+                    write_text(nb_path(path), texts.nb);
+                    write_text(path, texts.inp);
+                    break;
+                }
+                case Format::hdf5:
+                    write_text(path, to_hdf5(splines));
                     break;
             }
         },

@@ -71,7 +71,7 @@ std::string_view TextCursor::word(std::string_view what) {
 void TextCursor::expect(std::string_view keyword) {
     const std::string_view found = word(keyword);
     if (found != keyword) {
-        fail("found {}; expected '{}'", quoted(found), keyword);
+        fail("found {}; expected '{}'", in_quotes(found), keyword);
     }
 }
 
@@ -84,10 +84,10 @@ double TextCursor::number(std::string_view what) {
     double value = 0.0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (code != std::errc() || end != digits.data() + digits.size()) {
-        fail("found {}; expected a number: {}", quoted(found), what);
+        fail("found {}; expected a number: {}", in_quotes(found), what);
     }
     if (!std::isfinite(value)) {
-        fail("found {}; expected a finite number: {}", quoted(found), what);
+        fail("found {}; expected a finite number: {}", in_quotes(found), what);
     }
     return value;
 }
@@ -97,7 +97,7 @@ int TextCursor::integer(std::string_view what, int low, int high) {
     long value = 0;
     const auto [end, code] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (code != std::errc() || end != found.data() + found.size() || value < low || value > high) {
-        fail("found {}; expected {}, a whole number from {} to {}", quoted(found), what, low, high);
+        fail("found {}; expected {}, a whole number from {} to {}", in_quotes(found), what, low, high);
     }
     return static_cast<int>(value);
 }
@@ -144,13 +144,13 @@ std::string_view TextCursor::rest_of_line() {
 void TextCursor::expect_end(std::string_view what) {
     if (!at_end()) {
         const std::string_view found = word(what);
-        fail("found {} after the last of {}; expected nothing more", quoted(found), what);
+        fail("found {} after the last of {}; expected nothing more", in_quotes(found), what);
     }
 }
 
 std::string TextCursor::where() const { return fmt::format("{}:{}", file_, word_line_); }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
     constexpr std::size_t longest = 40;
     std::string result(word.substr(0, longest));
     std::replace_if(

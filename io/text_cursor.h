@@ -60,7 +60,7 @@ class TextCursor {
 };
 
 /// The word in quotes, cut where it is long, with unprintable characters replaced: for messages.
-[[nodiscard]] std::string quoted(std::string_view word);
+[[nodiscard]] std::string in_quotes(std::string_view word);
 
 /// Shortest text that is read back as the same number.
 [[nodiscard]] std::string exact(double number);
