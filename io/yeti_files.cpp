@@ -187,7 +187,7 @@ void read_elements(const Model& inp, const Model& nb, std::vector<PatchData<d>>&
         }
     }
     if (element_blocks.empty()) {
-        inp.block("element");
+        static_cast<void>(inp.block("element"));
     }
     TextCursor spans = nb.cursor(nb.block("nijk"));
     TextCursor weight_words = nb.cursor(nb.block("weight"));
