@@ -13,14 +13,19 @@ namespace couture::iga {
 /// A side whose control points all coincide (collapsed to an arc or a point) is never an
 /// interface.
 ///
+/// Time grows linearly with the number of sides.
+///
 /// @return sides that overlap in their four corners but whose shapes differ, as warnings with
-///         both sides and the largest gap
+///         both sides and the largest gap. Sides that bulge away from each other by more than half
+///         their extent (the two halves of a hole's rim) are meant to differ and not reported.
 /// @throws TopologyError  if three sides coincide
 template <int d>
 std::vector<std::string> find_interfaces(MultiPatch<d>& multipatch, double tolerance = 1e-6);
 
-/// Refines where given interfaces do not conform in knots or degree until all do.
+/// Refines where given interfaces do not conform in knots or degree until all do: all patches
+/// that share a direction across interfaces get the common knot vector there.
 ///
+/// @param tolerance  relative to the size; infinity: shapes are not compared
 /// @throws TopologyError  if the shapes differ by more than `tolerance` of the size: names both
 ///                        sides and the largest gap
 template <int d>

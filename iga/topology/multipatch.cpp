@@ -3,11 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cassert>
 #include <set>
 
 #include "iga/core/error.h"
 #include "iga/core/nearest_name.h"
+#include "iga/topology/side_gap.h"
 
 namespace couture::iga {
 
@@ -134,31 +134,6 @@ void check_geometry(const MultiPatch<d>& multipatch, const Interface<d>& interfa
 }  // namespace
 
 template <int d>
-SideGap side_gap(const Patch<d>& first, const Patch<d>& second, const Interface<d>& interface) {
-    const std::vector<int> here =
-        functions_on<d>(first.space(), make_side<d>(0, interface.first_side).position);
-    const std::vector<int> there = matching_functions(second.space(), interface);
-    assert(here.size() == there.size());
-    const auto weight = [](const Patch<d>& patch, int i) {
-        return patch.is_rational() ? patch.weights()[i] : 1.0;
-    };
-    double factor = 0.0;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-        factor +=
-            weight(first, here[i]) / weight(second, there[i]) / static_cast<double>(here.size());
-    }
-    SideGap gap;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-        const double distance =
-            (first.control_points().row(here[i]) - second.control_points().row(there[i])).norm();
-        gap.distance = std::max(gap.distance, distance);
-        const double ratio = weight(first, here[i]) / weight(second, there[i]);
-        gap.weight = std::max(gap.weight, std::abs(ratio / factor - 1.0));
-    }
-    return gap;
-}
-
-template <int d>
 void check_combinatorics(const MultiPatch<d>& multipatch) {
     if (multipatch.patches.empty()) {
         throw TopologyError("MultiPatch: no patches; a geometry has at least one");
@@ -210,10 +185,9 @@ void check(const MultiPatch<d>& multipatch, double tolerance) {
     }
 }
 
-#define COUTURE_INSTANTIATE(d)                                                        \
-    template struct MultiPatch<d>;                                                    \
-    template SideGap side_gap(const Patch<d>&, const Patch<d>&, const Interface<d>&); \
-    template void check_combinatorics(const MultiPatch<d>&);                          \
+#define COUTURE_INSTANTIATE(d)                               \
+    template struct MultiPatch<d>;                           \
+    template void check_combinatorics(const MultiPatch<d>&); \
     template void check(const MultiPatch<d>&, double);
 COUTURE_INSTANTIATE(2)
 COUTURE_INSTANTIATE(3)

@@ -37,17 +37,6 @@ struct MultiPatch {
     [[nodiscard]] const BoundarySet<d>& boundary_set(const std::string& name) const;
 };
 
-/// How far two conforming sides are from being one.
-struct SideGap {
-    /// Largest distance between control points that should coincide.
-    double distance = 0.0;
-    /// Largest relative difference of weights after scaling to a common factor.
-    double weight = 0.0;
-};
-template <int d>
-[[nodiscard]] SideGap side_gap(const Patch<d>& first, const Patch<d>& second,
-                               const Interface<d>& interface);
-
 /// The part of `check` that looks at no control points: existing patches and sides, none in two
 /// interfaces, conforming degrees and knots, existing entities in boundary sets.
 ///

@@ -10,12 +10,9 @@ namespace couture::iga {
 
 namespace {
 
-/// Relative to the interval: knots that lie closer are one.
-constexpr double knot_tolerance = 1e-12;
-
 /// Number of the breakpoint of `knots` at xi, or nothing.
 std::optional<std::size_t> find_breakpoint(const KnotVector& knots, double xi) {
-    const double slack = knot_tolerance * (knots.back() - knots.front());
+    const double slack = knot_tolerance_of_span * (knots.back() - knots.front());
     const std::vector<double>& breakpoints = knots.breakpoints();
     const auto found = std::lower_bound(breakpoints.begin(), breakpoints.end(), xi - slack);
     if (found == breakpoints.end() || *found > xi + slack) {
@@ -26,7 +23,7 @@ std::optional<std::size_t> find_breakpoint(const KnotVector& knots, double xi) {
 
 void check_breakpoints(const KnotVector& geometry, const KnotVector& field, int patch,
                        int direction) {
-    const double slack = knot_tolerance * (geometry.back() - geometry.front());
+    const double slack = knot_tolerance_of_span * (geometry.back() - geometry.front());
     if (std::abs(field.front() - geometry.front()) > slack ||
         std::abs(field.back() - geometry.back()) > slack) {
         throw InputError(
