@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "data_folder.h"
 #include "io/spline_file.h"
+#include "tests/data_folder.h"
 
 using namespace couture;
 

@@ -5,7 +5,7 @@
 #include "iga/core/log.h"
 #include "io/atomic_file.h"
 #include "io/spline_file.h"
-#include "sample_splines.h"
+#include "tests/io/sample_splines.h"
 
 using namespace couture;
 using Catch::Matchers::Contains;
