@@ -1,7 +1,7 @@
 # Installs the built tree, then configures, builds and runs consumer/ against what was installed.
 # cmake -D BUILD=<built tree> -D WORK=<scratch directory> -P run.cmake
 function(run)
-    execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+    execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
     if(NOT code EQUAL 0)
         string(REPLACE ";" " " command "${ARGV}")
         message(FATAL_ERROR "${command}\nexit code ${code}\n${out}")
@@ -10,6 +10,7 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 
 # What is installed must not lead back into the tree that it was built from.
