@@ -27,7 +27,7 @@ pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser)
 
 # None of these pulls in HDF5: PETSc brings the OpenMPI flavour, VTK's is the serial one.
 find_package(VTK 9.1 REQUIRED COMPONENTS
-    CommonCore CommonDataModel IOXML)
+    CommonCore CommonDataModel CommonMisc IOXML)
 
 # The OpenMPI flavour of HDF5: PETSc links it.
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
