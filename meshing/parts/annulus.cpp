@@ -39,7 +39,7 @@ iga::MultiPatch<3> make_quarter_3d(const PartValues& values) {
 iga::MultiPatch<2> make_half(const PartValues& values) {
     iga::MultiPatch<2> half;
     half.patches = {make_sector(values, -pi / 2, pi / 2), make_sector(values, 0.0, pi / 2)};
-    iga::find_interfaces(half);
+    iga::find_interfaces(half, interface_tolerance);
     half.boundary_sets = {{"inner", {iga::make_side<2>(0, 0), iga::make_side<2>(1, 0)}},
                           {"outer", {iga::make_side<2>(0, 1), iga::make_side<2>(1, 1)}},
                           {"axis", {iga::make_side<2>(0, 2), iga::make_side<2>(1, 3)}}};

@@ -97,7 +97,7 @@ iga::MultiPatch<3> make_hollow_sphere(const PartValues& values) {
         inner.push_back(iga::make_side<3>(turn, 0));
         outer.push_back(iga::make_side<3>(turn, 1));
     }
-    iga::find_interfaces(octant);
+    iga::find_interfaces(octant, interface_tolerance);
     octant.boundary_sets = {{"inner", inner}, {"outer", outer}};
     const double tolerance = place_tolerance(octant);
     name_outer_sides(octant, "cut_x", on_plane(0, 0.0, tolerance));

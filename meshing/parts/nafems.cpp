@@ -36,7 +36,7 @@ iga::MultiPatch<3> make_le10(const PartValues& values) {
     iga::MultiPatch<3> plate;
     plate.patches = {make_slab(ring, 0.0, thickness / 2),
                      make_slab(ring, thickness / 2, thickness)};
-    iga::find_interfaces(plate);
+    iga::find_interfaces(plate, interface_tolerance);
     const auto both = [](int side) {
         return iga::BoundarySet<3>{iga::make_side<3>(0, side), iga::make_side<3>(1, side)};
     };

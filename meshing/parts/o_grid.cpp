@@ -38,7 +38,7 @@ iga::MultiPatch<3> make_cylinder(const PartValues& values) {
     const double length = values.at("length");
     iga::MultiPatch<3> cylinder =
         make_slabs(make_disc(radius, values.at("core") * radius), 0.0, length);
-    iga::find_interfaces(cylinder);
+    iga::find_interfaces(cylinder, interface_tolerance);
     const double tolerance = place_tolerance(cylinder);
     name_outer_sides(cylinder, "wall", on_cylinder(2, radius, tolerance));
     name_outer_sides(cylinder, "z_low", on_plane(2, 0.0, tolerance));

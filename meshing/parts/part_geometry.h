@@ -35,6 +35,10 @@ using Place = std::function<bool(const Vector3&)>;
 /// Points at distance `radius` from the line along `axis` through the origin.
 [[nodiscard]] Place on_cylinder(int axis, double radius, double tolerance);
 
+/// For `find_interfaces`: sides made from the same numbers differ by rounding only, and a part may
+/// be thousands of times longer than thick.
+constexpr double interface_tolerance = 1e-10;
+
 /// Length below which two places are one: 1e-9 of the size.
 template <int d>
 [[nodiscard]] double place_tolerance(const iga::MultiPatch<d>& multipatch);

@@ -83,8 +83,8 @@ PartValues complete_values(const PartInfo& info, const std::map<std::string, dou
 }  // namespace
 
 PartParameter length_parameter(std::string name, double value, std::string meaning) {
-    constexpr double smallest = 1e-6;
-    constexpr double largest = 1e6;
+    constexpr double smallest = 1e-3;
+    constexpr double largest = 1e5;
     return {std::move(name), value, smallest, largest, std::move(meaning)};
 }
 

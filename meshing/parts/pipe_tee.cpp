@@ -73,7 +73,7 @@ iga::MultiPatch<3> make_pipe_tee(const PartValues& values) {
         tee.patches.push_back(
             iga::make_ruled(across_branch(section, slope, 0.0), across_branch(section, 0.0, H)));
     }
-    iga::find_interfaces(tee);
+    iga::find_interfaces(tee, interface_tolerance);
     add_sets(tee, values);
     return tee;
 }

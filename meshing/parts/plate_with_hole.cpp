@@ -27,7 +27,7 @@ iga::MultiPatch<2> make_patches(const PartValues& values) {
 
 template <int d>
 void join_and_name(iga::MultiPatch<d>& plate, const PartValues& values) {
-    iga::find_interfaces(plate);
+    iga::find_interfaces(plate, interface_tolerance);
     const double tolerance = place_tolerance(plate);
     const double half_width = values.at("half_width");
     name_outer_sides(plate, "hole", on_cylinder(2, values.at("hole_radius"), tolerance));
