@@ -148,7 +148,7 @@ TEST_CASE("parts: shells have their sets at the ends, the crown and the edge", "
     const double angle = 40 * pi / 180;
     const double size = 25.0;
     CHECK(largest_on<3>(roof, "diaphragm", coordinate(1)) == 0.0);
-    CHECK(largest_on<3>(roof, "mid_span", coordinate(1, 25.0)) == 0.0);
+    CHECK(largest_on<3>(roof, "mid_span", coordinate(1, 25.0)) < rounding * size);
     CHECK(largest_on<3>(roof, "crown", coordinate(0)) < rounding * size);
     CHECK(largest_on<3>(roof, "free_edge", [angle](const VectorX& x) {
               return std::atan2(x[0], x[2]) - angle;
@@ -159,7 +159,7 @@ TEST_CASE("parts: shells have their sets at the ends, the crown and the edge", "
     const iga::MultiPatch<3> cylinder = make_solid_part("pinched_cylinder");
     CHECK(largest_on<3>(cylinder, "cut_z", coordinate(2)) < rounding * 300);
     CHECK(largest_on<3>(cylinder, "load_line", coordinate(0)) < rounding * 300);
-    CHECK(largest_on<3>(cylinder, "load_line", coordinate(1, 300.0)) == 0.0);
+    CHECK(largest_on<3>(cylinder, "load_line", coordinate(1, 300.0)) < rounding * 300);
     CHECK(largest_on<3>(cylinder, "load_point", coordinate(2, 301.5)) < rounding * 300);
 }
 
