@@ -1,19 +1,28 @@
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <new>
 #include <utility>
 #include <vector>
 
 namespace couture {
 
 /// Allocator that leaves numbers uninitialised, so that the threads that fill an array are the
-/// first to touch its pages.
+/// first to touch its pages, and aligns to cache lines, so that it can be read as vectors.
 template <typename T>
-struct UninitializedAllocator : std::allocator<T> {
+struct UninitializedAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t alignment{64};
+
+    UninitializedAllocator() = default;
     template <typename U>
-    struct rebind {
-        using other = UninitializedAllocator<U>;
-    };
+    UninitializedAllocator(const UninitializedAllocator<U>&) noexcept {}
+
+    [[nodiscard]] T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new(n * sizeof(T), alignment));
+    }
+    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+
     template <typename U, typename... Args>
     void construct(U* p, Args&&... args) {
         if constexpr (sizeof...(Args) == 0) {
@@ -22,6 +31,7 @@ struct UninitializedAllocator : std::allocator<T> {
             ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
         }
     }
+    bool operator==(const UninitializedAllocator&) const { return true; }
 };
 
 /// A vector whose resize does not clear the new elements.

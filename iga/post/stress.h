@@ -1,7 +1,6 @@
 #pragma once
 
 #include "iga/mechanics/problem.h"
-#include "iga/spline/point_inversion.h"
 #include "iga/topology/field.h"
 
 namespace couture::iga {
@@ -38,27 +37,5 @@ template <int d>
 [[nodiscard]] GaussPointStresses gauss_point_stresses(const Problem& problem,
                                                       const Field<d>& displacement,
                                                       const std::string& load_case);
-
-/// Where in which patch a point of space lies.
-template <int d>
-struct Location {
-    int patch = 0;
-    Vector<d> xi;
-};
-
-/// Finds points in the body.
-template <int d>
-class Locator {
-  public:
-    explicit Locator(const MultiPatch<d>& geometry);
-    /// The patch and parameter of a point; nothing if no patch is within `tolerance`.
-    [[nodiscard]] std::optional<Location<d>> find(const Vector3& point, double tolerance) const;
-    /// The nearest place of the body and its distance.
-    [[nodiscard]] std::pair<Location<d>, double> nearest(const Vector3& point) const;
-
-  private:
-    std::vector<PointInversion<d>> patches_;
-    int dimension_;
-};
 
 }  // namespace couture::iga

@@ -22,7 +22,7 @@ struct CaseResult {
     std::string name;
     /// n_dofs x components.
     Field<d> displacement;
-    /// 1/2 u K u - (thermal terms): the strain energy.
+    /// Half the integral of stress : elastic strain.
     double energy = 0.0;
     /// Sum of external forces (loads) and of reactions of each support set, 3 components.
     Vector3 applied_force = Vector3::Zero();

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+
+#include "iga/core/types.h"
+
+namespace couture::iga {
+
+/// A symmetric bilinear form a(v, u) = integral of sum D_s v_a A[a, b][s, t] D_t u_b, where
+/// D_s = d/dx_s for s < d and D_d is the value itself. Physics enters here as a pure function of
+/// one point; the assembly knows nothing else of it.
+template <int d>
+struct BilinearForm {
+    int n_components = 1;
+    /// A has entries with the value (s = d or t = d).
+    bool has_value = false;
+    /// A depends on the place (else it is asked for once per patch).
+    bool varies = false;
+    /// Fills A, [a][b][s][t], n_components^2 (d + 1)^2 numbers, cleared before.
+    /// @param x  position (z = 0 in the plane)
+    std::function<void(int patch, const Vector3& x, double* A)> coefficients;
+
+    [[nodiscard]] int size() const { return n_components * n_components * (d + 1) * (d + 1); }
+};
+
+/// k times the product of gradients, plus c times the product of values.
+template <int d>
+[[nodiscard]] BilinearForm<d> scalar_form(double k, double c) {
+    BilinearForm<d> form;
+    form.has_value = c != 0.0;
+    form.coefficients = [k, c](int, const Vector3&, double* A) {
+        for (int s = 0; s < d; ++s) {
+            A[s * (d + 1) + s] = k;
+        }
+        A[d * (d + 1) + d] = c;
+    };
+    return form;
+}
+
+}  // namespace couture::iga

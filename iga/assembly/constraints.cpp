@@ -1,0 +1,446 @@
+#include "iga/assembly/constraints.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+
+#include "iga/assembly/elasticity.h"
+#include "iga/assembly/entity_quadrature.h"
+#include "iga/core/error.h"
+#include "iga/core/format.h"
+
+namespace couture::iga {
+
+namespace {
+
+/// Two directions, or two prescribed values, nearer than this (relative) are one.
+constexpr double same_direction = 1e-8;
+constexpr double same_value = 1e-6;
+/// A set whose unit normals differ by more than this is curved.
+constexpr double flatness = 1e-6;
+
+template <int d>
+std::vector<int> dofs_of_set(const Space<d>& space, const BoundarySet<d>& set) {
+    std::vector<int> dofs;
+    for (const PatchEntity<d>& entity : set) {
+        const std::vector<int> on = space.dofs_on(entity);
+        dofs.insert(dofs.end(), on.begin(), on.end());
+    }
+    std::sort(dofs.begin(), dofs.end());
+    dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+    return dofs;
+}
+
+/// Coefficients on `dofs` of the function nearest to `value` in L2 over the set.
+template <int d>
+VectorX project(const Space<d>& space, const BoundarySet<d>& set, const std::vector<int>& dofs,
+                const MatrixX& positions, const Function& value) {
+    const auto n = static_cast<Eigen::Index>(dofs.size());
+    const auto local = [&dofs](int dof) {
+        return static_cast<int>(std::lower_bound(dofs.begin(), dofs.end(), dof) - dofs.begin());
+    };
+    std::vector<Eigen::Triplet<double>> entries;
+    VectorX b = VectorX::Zero(n);
+    std::optional<double> first;
+    bool is_constant = true;
+    for (const PatchEntity<d>& entity : set) {
+        for_entity_points<d>(space, entity, {}, [&](const EntityPoint<d>& point) {
+            const double f = value(point.x, 0.0);
+            if (!std::isfinite(f)) {
+                throw InputError("prescribed displacement at {} = {}; must be finite",
+                                 format_point(point.x), f);
+            }
+            is_constant = is_constant && f == first.value_or(f);
+            first = first.value_or(f);
+            for (std::size_t i = 0; i < point.dofs.size(); ++i) {
+                b[local(point.dofs[i])] += point.weight * f * point.values[i];
+                for (std::size_t j = 0; j < point.dofs.size(); ++j) {
+                    entries.emplace_back(local(point.dofs[i]), local(point.dofs[j]),
+                                         point.weight * point.values[i] * point.values[j]);
+                }
+            }
+        });
+    }
+    if (is_constant) {
+        return VectorX::Constant(n, first.value_or(0.0));
+    }
+    SparseMatrix mass(n, n);
+    mass.setFromTriplets(entries.begin(), entries.end());
+    // Functions without area (on a collapsed side) take the value at their place.
+    const double largest = mass.diagonal().maxCoeff();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        if (!(mass.coeff(i, i) > 1e-14 * largest)) {
+            mass.coeffRef(i, i) += largest;
+            b[i] = largest * value(positions.row(dofs[i]).transpose(), 0.0);
+        }
+    }
+    const Eigen::SimplicialLDLT<SparseMatrix> factor(mass);
+    VectorX x = factor.solve(b);
+    x += factor.solve(b - mass * x);
+    return x;
+}
+
+/// The normal of a plane set.
+template <int d>
+Vector3 plane_normal(const Space<d>& space, const BoundarySet<d>& set, const Support& support) {
+    std::optional<Vector3> normal;
+    const std::string prefix = support.source.empty() ? "" : support.source + ": ";
+    for (const PatchEntity<d>& entity : set) {
+        if (!entity.is_side()) {
+            throw InputError(
+                "{}normal displacement on '{}': {} is not a side and has no normal; "
+                "hold its components instead",
+                prefix, support.on, entity.name());
+        }
+        for_entity_points<d>(space, entity, {}, [&](const EntityPoint<d>& point) {
+            if (!(point.normal.norm() > 0.5)) {
+                return;
+            }
+            normal = normal.value_or(point.normal);
+            const double gap = (point.normal - *normal).norm();
+            if (gap > flatness) {
+                throw InputError(
+                    "{}normal displacement on '{}': the set is curved, its normal is "
+                    "{} at one place and {} at {}; a normal can be held on a plane "
+                    "only (a stiff [[foundation]] with 'normal' holds a curved one)",
+                    prefix, support.on, format_point(*normal), format_point(point.normal),
+                    format_point(point.x));
+            }
+        });
+    }
+    if (!normal) {
+        throw InputError("{}normal displacement on '{}': the set has no area", prefix, support.on);
+    }
+    // Exactly along an axis where it is so up to rounding.
+    for (int a = 0; a < d; ++a) {
+        if (std::abs(std::abs((*normal)[a]) - 1.0) < 1e-12) {
+            return (*normal)[a] > 0.0 ? Vector3(Vector3::Unit(a)) : Vector3(-Vector3::Unit(a));
+        }
+    }
+    return *normal;
+}
+
+}  // namespace
+
+template <int d>
+void Constraints<d>::to_global(MatrixX& unknowns) const {
+    for (const auto& [dof, frame] : frames) {
+        unknowns.middleRows<d>(d * dof) =
+            (frame.transpose() * unknowns.middleRows<d>(d * dof)).eval();
+    }
+}
+
+template <int d>
+void Constraints<d>::to_frames(MatrixX& unknowns) const {
+    for (const auto& [dof, frame] : frames) {
+        unknowns.middleRows<d>(d * dof) = (frame * unknowns.middleRows<d>(d * dof)).eval();
+    }
+}
+
+template <int d>
+MatrixX dof_positions(const Space<d>& space) {
+    MatrixX positions = MatrixX::Zero(space.n_dofs(), 3);
+    for (int p = 0; p < space.n_patches(); ++p) {
+        const Patch<d>& patch = space.geometry().patches[p];
+        const TensorSpace<d>& tensor = space.tensor(p);
+        const int n = patch.dimension();
+        if (tensor == patch.space()) {
+            for (int i = 0; i < tensor.n_basis(); ++i) {
+                positions.row(space.dofs(p)[i]).head(n) = patch.control_points().row(i);
+            }
+            continue;
+        }
+        std::array<std::vector<double>, d> greville;
+        for (int k = 0; k < d; ++k) {
+            greville[k] = tensor.knots[k].greville();
+        }
+        for (int i = 0; i < tensor.n_basis(); ++i) {
+            const std::array<int, d> index = tensor.indices(i);
+            Vector<d> xi;
+            for (int k = 0; k < d; ++k) {
+                xi[k] = greville[k][index[k]];
+            }
+            positions.row(space.dofs(p)[i]).head(n) = patch.point(xi).transpose();
+        }
+    }
+    return positions;
+}
+
+template <int d>
+Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
+                                const std::vector<std::string>& load_cases) {
+    const int nc = n_components<d>(problem);
+    const auto n_cases = static_cast<Eigen::Index>(load_cases.size());
+    const MatrixX positions = dof_positions(space);
+    std::map<int, std::vector<HeldDirection<d>>> held;
+
+    const auto hold = [&](int dof, const Vector<d>& direction, int i_support,
+                          const VectorX& values) {
+        std::vector<HeldDirection<d>>& here = held[dof];
+        Vector<d> rest = direction;
+        VectorX value = values;
+        for (const HeldDirection<d>& other : here) {
+            const double c = other.direction.dot(rest);
+            rest -= c * other.direction;
+            value -= c * other.values;
+        }
+        const double length = rest.norm();
+        if (length > same_direction) {
+            here.push_back({dof, rest / length, i_support, value / length});
+            return;
+        }
+        double scale = values.cwiseAbs().maxCoeff();
+        for (const HeldDirection<d>& other : here) {
+            scale = std::max(scale, other.values.cwiseAbs().maxCoeff());
+        }
+        if (value.cwiseAbs().maxCoeff() > same_value * scale) {
+            const Support& support = problem.supports[i_support];
+            throw InputError(
+                "{}displacement on '{}' contradicts the one on '{}' at {}: they differ "
+                "by {:.6g}; leave one of them out where they meet",
+                support.source.empty() ? "" : support.source + ": ", support.on,
+                problem.supports[here.front().support].on, format_point(positions.row(dof)),
+                value.cwiseAbs().maxCoeff());
+        }
+    };
+
+    for (std::size_t s = 0; s < problem.supports.size(); ++s) {
+        const Support& support = problem.supports[s];
+        const BoundarySet<d>& set = space.geometry().boundary_set(support.on);
+        const std::vector<int> dofs = dofs_of_set(space, set);
+        const auto apply = [&](const Vector<d>& direction, const Function& function) {
+            const VectorX value = project(space, set, dofs, positions, function);
+            for (std::size_t i = 0; i < dofs.size(); ++i) {
+                VectorX values(n_cases);
+                for (Eigen::Index c = 0; c < n_cases; ++c) {
+                    values[c] = acts_in(support, load_cases[c]) ? value[i] : 0.0;
+                }
+                hold(dofs[i], direction, static_cast<int>(s), values);
+            }
+        };
+        for (int a = 0; a < nc; ++a) {
+            if (support.components[a]) {
+                apply(Vector<d>::Unit(a), *support.components[a]);
+            }
+        }
+        if (support.normal && nc == d) {
+            apply(plane_normal(space, set, support).template head<d>(), *support.normal);
+        }
+    }
+
+    Constraints<d> constraints;
+    constraints.n_components = nc;
+    constraints.is_fixed.assign(static_cast<std::size_t>(space.n_dofs()) * nc, 0);
+    constraints.support.assign(constraints.is_fixed.size(), -1);
+    constraints.values = MatrixX::Zero(space.n_dofs() * nc, n_cases);
+    for (const auto& [dof, directions] : held) {
+        const bool along_axes =
+            std::all_of(directions.begin(), directions.end(), [](const HeldDirection<d>& h) {
+                return h.direction.cwiseAbs().maxCoeff() > 1.0 - 1e-12;
+            });
+        const auto fix = [&](int component, const HeldDirection<d>& h, double sign) {
+            const int unknown = nc * dof + component;
+            constraints.is_fixed[unknown] = 1;
+            constraints.support[unknown] = h.support;
+            constraints.values.row(unknown) = sign * h.values.transpose();
+        };
+        if (along_axes) {
+            for (const HeldDirection<d>& h : directions) {
+                int component = 0;
+                h.direction.cwiseAbs().maxCoeff(&component);
+                fix(component, h, h.direction[component] > 0.0 ? 1.0 : -1.0);
+            }
+            continue;
+        }
+        // Held directions first, then any complement.
+        Matrix<d> frame = Matrix<d>::Zero();
+        int n = 0;
+        for (const HeldDirection<d>& h : directions) {
+            frame.row(n) = h.direction.transpose();
+            fix(n, h, 1.0);
+            ++n;
+        }
+        for (int a = 0; a < d && n < d; ++a) {
+            Vector<d> axis = Vector<d>::Unit(a);
+            for (int pass = 0; pass < 2; ++pass) {
+                for (int k = 0; k < n; ++k) {
+                    axis -= frame.row(k).dot(axis) * frame.row(k).transpose();
+                }
+            }
+            if (axis.norm() > 0.5 / d) {
+                frame.row(n++) = axis.normalized().transpose();
+            }
+        }
+        constraints.frames[dof] = frame;
+    }
+    return constraints;
+}
+
+template <int d>
+MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
+                         std::vector<std::string>& names) {
+    const int nc = n_components<d>(problem);
+    if (problem.physics == Physics::poisson) {
+        names = {"the constant"};
+        return MatrixX::Ones(space.n_dofs(), 1);
+    }
+    if (problem.kinematics == Kinematics::axisymmetric) {
+        names = {"translation along y (the axis)"};
+        MatrixX modes = MatrixX::Zero(space.n_dofs() * nc, 1);
+        for (int i = 0; i < space.n_dofs(); ++i) {
+            modes(nc * i + 1, 0) = 1.0;
+        }
+        return modes;
+    }
+    MatrixX x = dof_positions(space);
+    const MatrixX box = space.geometry().bounding_box();
+    Vector3 centre = Vector3::Zero();
+    centre.head(box.rows()) = 0.5 * (box.col(0) + box.col(1));
+    x.rowwise() -= centre.transpose();
+    const std::string axes = "xyz";
+    for (int a = 0; a < d; ++a) {
+        names.push_back(fmt::format("translation along {}", axes[a]));
+    }
+    for (int a = d == 2 ? 2 : 0; a < 3; ++a) {
+        names.push_back(fmt::format("rotation about {}", axes[a]));
+    }
+    MatrixX modes = MatrixX::Zero(space.n_dofs() * nc, static_cast<Eigen::Index>(names.size()));
+    for (int i = 0; i < space.n_dofs(); ++i) {
+        for (int a = 0; a < d; ++a) {
+            modes(nc * i + a, a) = 1.0;
+        }
+        for (int a = d == 2 ? 2 : 0; a < 3; ++a) {
+            const Vector3 u = Vector3::Unit(a).cross(Vector3(x.row(i)));
+            const int column = d == 2 ? d : d + a;
+            modes.block(nc * i, column, nc, 1) = u.head(nc);
+        }
+    }
+    return modes;
+}
+
+template <int d>
+std::vector<std::string> free_rigid_motions(const Space<d>& space, const Problem& problem,
+                                            const Constraints<d>& constraints,
+                                            const SparseMatrix& foundations) {
+    const int nc = constraints.n_components;
+    std::vector<std::string> names;
+    MatrixX modes = rigid_body_modes(space, problem, names);
+    const auto n_modes = modes.cols();
+
+    // Bodies: patches joined by shared functions.
+    std::vector<int> body(space.n_dofs(), -1);
+    std::vector<int> body_of_patch(space.n_patches());
+    for (int p = 0; p < space.n_patches(); ++p) {
+        body_of_patch[p] = p;
+    }
+    const auto root = [&](int p) {
+        while (body_of_patch[p] != p) {
+            p = body_of_patch[p] = body_of_patch[body_of_patch[p]];
+        }
+        return p;
+    };
+    for (int p = 0; p < space.n_patches(); ++p) {
+        for (const int dof : space.dofs(p)) {
+            if (body[dof] < 0) {
+                body[dof] = p;
+            } else {
+                const int a = root(body[dof]);
+                const int b = root(p);
+                body_of_patch[std::max(a, b)] = std::min(a, b);
+            }
+        }
+    }
+    std::map<int, Matrix<6>> held;
+    std::map<int, Matrix<6>> whole;
+    for (int p = 0; p < space.n_patches(); ++p) {
+        held.try_emplace(root(p), Matrix<6>::Zero());
+        whole.try_emplace(root(p), Matrix<6>::Zero());
+    }
+    const MatrixX ground = foundations.nonZeros() > 0 ? MatrixX(foundations * modes) : MatrixX();
+    const double ground_scale =
+        ground.size() > 0 ? std::max(foundations.diagonal().maxCoeff(), 1e-300) : 1.0;
+    MatrixX framed = modes;
+    constraints.to_frames(framed);
+    for (int i = 0; i < space.n_dofs(); ++i) {
+        Matrix<6>& H = held[root(body[i])];
+        Matrix<6>& M = whole[root(body[i])];
+        for (int a = 0; a < nc; ++a) {
+            const int unknown = nc * i + a;
+            M.topLeftCorner(n_modes, n_modes) +=
+                modes.row(unknown).transpose() * modes.row(unknown);
+            if (constraints.is_fixed[unknown]) {
+                H.topLeftCorner(n_modes, n_modes) +=
+                    framed.row(unknown).transpose() * framed.row(unknown);
+            }
+            if (ground.size() > 0) {
+                H.topLeftCorner(n_modes, n_modes) +=
+                    modes.row(unknown).transpose() * ground.row(unknown) / ground_scale;
+            }
+        }
+    }
+    std::vector<std::string> free;
+    // One held function among 1e6 gives 1e-6; rounding stays below 1e-15.
+    constexpr double held_tolerance = 1e-13;
+    for (const auto& [patch, H] : held) {
+        // Modes orthonormal over the body, so that the eigenvalues are comparable.
+        const MatrixX M = whole[patch].topLeftCorner(n_modes, n_modes);
+        const Eigen::SelfAdjointEigenSolver<MatrixX> whole_solver(M);
+        const MatrixX W =
+            whole_solver.eigenvectors() *
+            whole_solver.eigenvalues().cwiseMax(1e-300).cwiseInverse().cwiseSqrt().asDiagonal();
+        const Eigen::SelfAdjointEigenSolver<MatrixX> solver(
+            MatrixX(W.transpose() * H.topLeftCorner(n_modes, n_modes) * W));
+        std::vector<Eigen::Index> null_space;
+        for (Eigen::Index k = 0; k < n_modes; ++k) {
+            if (solver.eigenvalues()[k] < held_tolerance) {
+                null_space.push_back(k);
+            }
+        }
+        if (null_space.empty()) {
+            continue;
+        }
+        // A pure motion is named if it is free by itself; the rest is counted.
+        MatrixX basis(n_modes, static_cast<Eigen::Index>(null_space.size()));
+        for (std::size_t k = 0; k < null_space.size(); ++k) {
+            basis.col(static_cast<Eigen::Index>(k)) = W * solver.eigenvectors().col(null_space[k]);
+        }
+        const MatrixX Q =
+            basis.householderQr().householderQ() * MatrixX::Identity(n_modes, basis.cols());
+        const std::string where =
+            held.size() > 1 ? fmt::format(" (the body of patch {})", patch) : "";
+        std::size_t n_named = 0;
+        for (Eigen::Index k = 0; k < n_modes; ++k) {
+            if (Q.row(k).norm() > 1.0 - 1e-6) {
+                free.push_back(names[k] + where);
+                ++n_named;
+            }
+        }
+        if (n_named < null_space.size()) {
+            std::string mixture;
+            for (Eigen::Index k = 0; k < n_modes; ++k) {
+                if (Q.row(k).norm() > 1e-3 && Q.row(k).norm() <= 1.0 - 1e-6) {
+                    mixture += (mixture.empty() ? "" : " with ") + names[k];
+                }
+            }
+            free.push_back(fmt::format("{} combined motion{} of {}{}", null_space.size() - n_named,
+                                       null_space.size() - n_named > 1 ? "s" : "", mixture, where));
+        }
+    }
+    return free;
+}
+
+#define COUTURE_INSTANTIATE(d)                                                                     \
+    template struct Constraints<d>;                                                                \
+    template Constraints<d> make_constraints(const Space<d>&, const Problem&,                      \
+                                             const std::vector<std::string>&);                     \
+    template MatrixX dof_positions(const Space<d>&);                                               \
+    template MatrixX rigid_body_modes(const Space<d>&, const Problem&, std::vector<std::string>&); \
+    template std::vector<std::string> free_rigid_motions(                                          \
+        const Space<d>&, const Problem&, const Constraints<d>&, const SparseMatrix&);
+COUTURE_INSTANTIATE(2)
+COUTURE_INSTANTIATE(3)
+#undef COUTURE_INSTANTIATE
+
+}  // namespace couture::iga

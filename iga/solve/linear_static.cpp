@@ -1,0 +1,231 @@
+#include "iga/solve/linear_static.h"
+
+#include <algorithm>
+
+#include "iga/assembly/assembler.h"
+#include "iga/assembly/constraints.h"
+#include "iga/assembly/elasticity.h"
+#include "iga/assembly/loads.h"
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+
+namespace couture::iga {
+
+namespace {
+
+/// Runs one phase, times it, and says so when it starts.
+template <typename Body>
+auto timed(std::vector<Phase>& phases, const std::string& name, const Body& body) {
+    log::detail(name);
+    const Timer timer;
+    auto result = body();
+    phases.push_back({name, timer.seconds(), peak_memory()});
+    log::info(fmt::format("{:<14} {:8.2f} s", name, phases.back().seconds));
+    return result;
+}
+
+void add_symmetric(BlockMatrix& matrix, const SparseMatrix& addition) {
+    const int n = matrix.block_size;
+    for (int column = 0; column < addition.outerSize(); ++column) {
+        for (SparseMatrix::InnerIterator it(addition, column); it; ++it) {
+            const int row_block = static_cast<int>(it.row()) / n;
+            const int column_block = column / n;
+            if (row_block > column_block) {
+                continue;
+            }
+            const auto first = matrix.columns.begin() + matrix.row_begin[row_block];
+            const auto last = matrix.columns.begin() + matrix.row_begin[row_block + 1];
+            const auto place = std::lower_bound(first, last, column_block);
+            matrix
+                .values[(place - matrix.columns.begin()) * n * n + it.row() % n * n + column % n] +=
+                it.value();
+        }
+    }
+}
+
+/// Turns rows and columns of functions with a frame of their own.
+template <int d>
+void rotate_to_frames(BlockMatrix& matrix, const Constraints<d>& constraints) {
+    if (constraints.frames.empty()) {
+        return;
+    }
+    std::vector<const Matrix<d>*> frame(matrix.n_rows, nullptr);
+    for (const auto& [dof, Q] : constraints.frames) {
+        frame[dof] = &Q;
+    }
+    using Block = Eigen::Matrix<double, d, d, Eigen::RowMajor>;
+    for (int row = 0; row < matrix.n_rows; ++row) {
+        for (std::int64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
+            Eigen::Map<Block> block(&matrix.values[e * d * d]);
+            if (frame[row] != nullptr) {
+                block = (*frame[row] * block).eval();
+            }
+            if (const Matrix<d>* Q = frame[matrix.columns[e]]; Q != nullptr) {
+                block = (block * Q->transpose()).eval();
+            }
+        }
+    }
+}
+
+/// unknowns x cases from n_dofs x components, and back.
+VectorX flatten(const MatrixX& coefficients) { return coefficients.transpose().reshaped(); }
+
+MatrixX unflatten(const VectorX& unknowns, int n_components) {
+    return unknowns.reshaped(n_components, unknowns.size() / n_components).transpose();
+}
+
+void require_finite(const MatrixX& u) {
+    if (!u.allFinite()) {
+        throw SolverError(
+            "the solution is not finite; check materials and loads for extreme values");
+    }
+}
+
+template <int d>
+Vector3 sum_of_components(const MatrixX& forces) {
+    Vector3 sum = Vector3::Zero();
+    sum.head(forces.cols()) = forces.colwise().sum().transpose();
+    return sum;
+}
+
+}  // namespace
+
+template <int d>
+LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Problem& problem,
+                                          const LinearStaticOptions& options) {
+    LinearStaticResult<d> result;
+    const int nc = n_components<d>(problem);
+    const std::vector<std::string> cases = problem.load_cases();
+    const auto n_cases = static_cast<Eigen::Index>(cases.size());
+    result.n_unknowns = space->n_dofs() * nc;
+    for (int p = 0; p < space->n_patches(); ++p) {
+        int n = 1;
+        for (const int n_k : space->tensor(p).n_elements()) {
+            n *= n_k;
+        }
+        result.n_elements += n;
+    }
+
+    const BilinearForm<d> form = stiffness_form<d>(problem, space->n_patches());
+    const SparseMatrix foundations = assemble_foundations(*space, problem, options.n_gauss_points);
+    const Constraints<d> constraints = make_constraints(*space, problem, cases);
+    const std::vector<std::string> free =
+        free_rigid_motions(*space, problem, constraints, foundations);
+    if (!free.empty()) {
+        throw SolverError(
+            "the body is not held: free {}: {}; add supports ([[fixed]], "
+            "[[symmetry]], [[displacement]]) or a [[foundation]]",
+            problem.physics == Physics::poisson ? "mode" : "rigid-body motions",
+            fmt::join(free, ", "));
+    }
+
+    std::vector<MatrixX> loads;
+    BlockMatrix K = timed(result.phases, "assembly", [&] {
+        for (const std::string& name : cases) {
+            loads.push_back(assemble_loads(*space, problem, name, options.n_gauss_points));
+        }
+        BlockMatrix matrix = assemble(*space, form, options.n_gauss_points);
+        add_symmetric(matrix, foundations);
+        rotate_to_frames(matrix, constraints);
+        return matrix;
+    });
+
+    MatrixX f(result.n_unknowns, n_cases);
+    for (Eigen::Index c = 0; c < n_cases; ++c) {
+        f.col(c) = flatten(loads[c]);
+    }
+    if (!f.allFinite()) {
+        throw InputError("a load is not finite; check its value or expression over the whole set");
+    }
+    constraints.to_frames(f);
+    const MatrixX b = f - K * constraints.values;
+
+    const std::unique_ptr<LinearSolver> solver = make_linear_solver(options.solver);
+    std::vector<std::string> mode_names;
+    LinearSystem system{K, constraints.is_fixed, rigid_body_modes(*space, problem, mode_names)};
+    constraints.to_frames(system.near_null_space);
+    timed(result.phases, "factorization", [&] {
+        solver->factorize(system);
+        return 0;
+    });
+    MatrixX u;
+    result.solver = timed(result.phases, "solution", [&] { return solver->solve(b, u); });
+    u += constraints.values;
+    require_finite(u);
+
+    const MatrixX Ku = K * u;
+    for (Eigen::Index c = 0; c < n_cases; ++c) {
+        CaseResult<d> one;
+        one.name = cases[c];
+        MatrixX u_global = u.col(c);
+        constraints.to_global(u_global);
+        one.displacement = {space, unflatten(u_global, nc)};
+
+        const VectorX from_ground =
+            foundations.nonZeros() > 0 ? VectorX(foundations * u_global) : VectorX::Zero(u.rows());
+        one.foundation_force = -sum_of_components<d>(unflatten(from_ground, nc));
+        one.energy = strain_energy(problem, one.displacement, cases[c], options.n_gauss_points);
+        one.applied_force = sum_of_components<d>(loads[c]);
+
+        // Reactions, each held direction to the support that holds it.
+        Vector3 total = Vector3::Zero();
+        for (const Support& support : problem.supports) {
+            one.reactions.try_emplace(support.on, Vector3::Zero());
+        }
+        const VectorX residual = Ku.col(c) - f.col(c);
+        for (Eigen::Index i = 0; i < residual.size(); ++i) {
+            if (constraints.is_fixed[i] == 0) {
+                continue;
+            }
+            Vector3 force = Vector3::Zero();
+            const auto frame = constraints.frames.find(static_cast<int>(i) / nc);
+            if (frame == constraints.frames.end()) {
+                force[i % nc] = residual[i];
+            } else {
+                force.head<d>() = residual[i] * frame->second.row(i % nc).transpose();
+            }
+            one.reactions[problem.supports[constraints.support[i]].on] += force;
+            total += force;
+        }
+        const double scale = std::max({one.applied_force.norm(), total.norm(),
+                                       one.foundation_force.norm(), f.col(c).norm(), 1e-300});
+        Vector3 imbalance = one.applied_force + total + one.foundation_force;
+        if (problem.kinematics == Kinematics::axisymmetric) {
+            imbalance[0] = 0.0;  // hoop stress carries radial loads
+        }
+        one.balance = imbalance.norm() / scale;
+        result.cases.push_back(std::move(one));
+    }
+
+    for (const auto& [name, factors] : problem.combinations) {
+        CaseResult<d> sum;
+        sum.name = name;
+        sum.displacement = {space, MatrixX::Zero(space->n_dofs(), nc)};
+        for (const auto& [case_name, factor] : factors) {
+            const auto one = std::find_if(
+                result.cases.begin(), result.cases.begin() + n_cases,
+                [&, &wanted = case_name](const CaseResult<d>& r) { return r.name == wanted; });
+            if (one == result.cases.begin() + n_cases) {
+                throw InputError("combination '{}': there is no load case '{}'; there are: {}",
+                                 name, case_name, fmt::join(cases, ", "));
+            }
+            sum.displacement.coefficients += factor * one->displacement.coefficients;
+            sum.applied_force += factor * one->applied_force;
+            sum.foundation_force += factor * one->foundation_force;
+            for (const auto& [on, force] : one->reactions) {
+                sum.reactions.try_emplace(on, Vector3::Zero()).first->second += factor * force;
+            }
+            sum.balance = std::max(sum.balance, one->balance);
+        }
+        sum.energy = strain_energy(problem, sum.displacement, name, options.n_gauss_points);
+        result.cases.push_back(std::move(sum));
+    }
+    return result;
+}
+
+template LinearStaticResult<2> solve_linear_static(const SpacePtr<2>&, const Problem&,
+                                                   const LinearStaticOptions&);
+template LinearStaticResult<3> solve_linear_static(const SpacePtr<3>&, const Problem&,
+                                                   const LinearStaticOptions&);
+
+}  // namespace couture::iga
