@@ -1,6 +1,7 @@
 #include "io/spline_file.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "iga/core/error.h"
 #include "iga/core/log.h"
@@ -98,6 +99,39 @@ Format format_of(const std::filesystem::path& path, std::string_view text) {
 /// The other file of a yeti model.
 std::filesystem::path nb_path(std::filesystem::path path) { return path.replace_extension(".NB"); }
 
+/// Pairs of patches that meet, sorted.
+template <int d>
+std::vector<std::pair<int, int>> patch_pairs(const std::vector<iga::Interface<d>>& interfaces) {
+    std::vector<std::pair<int, int>> result;
+    for (const iga::Interface<d>& interface : interfaces) {
+        result.emplace_back(std::minmax(interface.first_patch, interface.second_patch));
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+/// Makes the listed interfaces conform. Old files of shells in space number the sides of another
+/// parametrization: where the listed pairs of patches are those that touch, the sides are found.
+template <int d>
+void conform(iga::MultiPatch<d>& multipatch, std::vector<std::string>& notes) {
+    try {
+        iga::make_conforming(multipatch);
+    } catch (const TopologyError& error) {
+        iga::MultiPatch<d> found = multipatch;
+        found.interfaces.clear();
+        if (multipatch.dimension() == d) {
+            throw;
+        }
+        static_cast<void>(iga::find_interfaces(found));
+        if (patch_pairs(found.interfaces) != patch_pairs(multipatch.interfaces)) {
+            throw;
+        }
+        multipatch = std::move(found);
+        notes.push_back(fmt::format(
+            "sides of the listed interfaces were replaced by those that touch: {}", error.what()));
+    }
+}
+
 /// Checks the interfaces of the file or finds those it does not list.
 template <int d>
 void complete(const std::string& file, iga::MultiPatch<d>& multipatch, bool lists_interfaces,
@@ -108,7 +142,7 @@ void complete(const std::string& file, iga::MultiPatch<d>& multipatch, bool list
     }
     try {
         if (lists_interfaces) {
-            iga::make_conforming(multipatch);
+            conform(multipatch, notes);
         } else {
             const std::vector<std::string> warnings = iga::find_interfaces(multipatch);
             notes.push_back(fmt::format("the file lists no interfaces; {} found",

@@ -134,4 +134,7 @@ TEST_CASE("read_splines: the duck is a closed shell of six surfaces in space", "
     CHECK(duck.dimension() == 3);
     CHECK(duck.interfaces.size() == 12);
     CHECK(duck.outer_sides().empty());
+    // The file numbers the sides of patches 2 to 5 otherwise than their control points run.
+    REQUIRE_FALSE(file.notes.empty());
+    CHECK_THAT(file.notes[0], Catch::Matchers::Contains("sides of the listed interfaces"));
 }
