@@ -27,7 +27,8 @@ pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser)
 
 # None of these pulls in HDF5: PETSc brings the OpenMPI flavour, VTK's is the serial one.
 find_package(VTK 9.1 REQUIRED COMPONENTS
-    CommonCore CommonDataModel CommonMisc IOXML)
+    CommonCore CommonDataModel CommonMisc FiltersCore IOImage IOXML
+    RenderingCore RenderingFreeType RenderingOpenGL2)
 
 # The OpenMPI flavour of HDF5: PETSc links it.
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)

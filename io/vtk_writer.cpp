@@ -23,9 +23,9 @@
 #include <set>
 
 #include "iga/core/error.h"
-#include "iga/spline/bspline_basis.h"
 #include "iga/spline/refine.h"
 #include "io/atomic_file.h"
+#include "io/sample_matrix.h"
 
 namespace couture::io {
 
@@ -75,33 +75,6 @@ KnotVector bezier_knots(const std::vector<double>& breakpoints, int degree) {
     return {degree, std::move(knots)};
 }
 
-/// Values of all functions at given parameters: parameters x n_basis.
-SparseMatrix sampling_matrix(const KnotVector& knots, const std::vector<double>& parameters) {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-        const int span = knots.find_span(parameters[i]);
-        const MatrixX values = iga::basis_derivatives(knots, span, parameters[i], 0);
-        for (int j = 0; j <= knots.degree(); ++j) {
-            entries.emplace_back(static_cast<int>(i), span - knots.degree() + j, values(0, j));
-        }
-    }
-    SparseMatrix matrix(static_cast<Eigen::Index>(parameters.size()), knots.n_basis());
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
-}
-
-std::vector<double> sample_parameters(const std::vector<double>& breakpoints, int samples) {
-    std::vector<double> parameters;
-    for (std::size_t e = 0; e + 1 < breakpoints.size(); ++e) {
-        for (int i = 0; i < samples; ++i) {
-            const double t = static_cast<double>(i) / samples;
-            parameters.push_back((1.0 - t) * breakpoints[e] + t * breakpoints[e + 1]);
-        }
-    }
-    parameters.push_back(breakpoints.back());
-    return parameters;
-}
-
 template <int d>
 NodeGrid<d> make_node_grid(const Space<d>& space, int i_patch, const VtuOptions& options) {
     const Patch<d>& patch = space.geometry().patches[i_patch];
@@ -114,8 +87,8 @@ NodeGrid<d> make_node_grid(const Space<d>& space, int i_patch, const VtuOptions&
             const std::vector<double> xi = sample_parameters(breakpoints, options.samples);
             grid.order[k] = 1;
             grid.n_cells[k] = static_cast<int>(xi.size()) - 1;
-            grid.from_geometry[k] = sampling_matrix(patch_knots, xi);
-            grid.from_space[k] = sampling_matrix(field_knots, xi);
+            grid.from_geometry[k] = sample_matrix(patch_knots, xi);
+            grid.from_space[k] = sample_matrix(field_knots, xi);
         } else {
             grid.order[k] = std::max(patch_knots.degree(), field_knots.degree());
             grid.n_cells[k] = field_knots.n_elements();

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "iga/core/types.h"
+
+namespace couture::io {
+
+/// Red, green, blue in [0, 1].
+using Color = std::array<double, 3>;
+
+/// Viridis, which is perceptually uniform, at t in [0, 1]. Source: [SmithVanDerWalt15].
+[[nodiscard]] Color viridis(double t);
+/// Colours that tell parts apart; repeats after eight.
+[[nodiscard]] Color part_color(int i);
+
+/// Round numbers from `low` to `high`, between three and about seven of them; `low` alone if both
+/// are equal.
+[[nodiscard]] std::vector<double> round_ticks(double low, double high);
+
+/// Triangles, shaded smoothly up to creases of 40 degrees.
+struct SurfacePiece {
+    /// n x 3.
+    MatrixX vertices;
+    /// m x 3 vertex numbers.
+    Eigen::MatrixXi triangles;
+    /// n numbers shown by the colour map, or empty: `color` is taken. NaN is shown grey.
+    VectorX values;
+    Color color{0.70, 0.76, 0.82};
+    double opacity = 1.0;
+};
+
+struct CurvePiece {
+    /// n x 3.
+    MatrixX points;
+    bool is_closed = false;
+    Color color{0.12, 0.14, 0.17};
+    /// Pixels.
+    double width = 2.2;
+};
+
+/// Text beside a point, always in front.
+struct Label {
+    Vector3 position = Vector3::Zero();
+    std::string text;
+};
+
+/// What a picture shows and from where. The view is a parallel projection fitted to the pieces.
+struct Scene {
+    std::vector<SurfacePiece> surfaces;
+    std::vector<CurvePiece> curves;
+    std::vector<Label> labels;
+    std::string title;
+    /// Quantity and unit above the colour bar, which is there if any surface has values.
+    std::string legend;
+    /// Values at the ends of the colour map; nothing: those of all surfaces.
+    std::optional<std::array<double, 2>> range;
+    /// Where the viewer looks, and what is up in the picture.
+    Vector3 view_direction{-1.0, 1.5, -1.0};
+    Vector3 up{0.0, 0.0, 1.0};
+    bool show_axes = true;
+    Color background{1.0, 1.0, 1.0};
+    int width = 1200;
+    int height = 900;
+};
+
+/// What is missing for pictures on this machine, with the way out; nothing if all is there.
+[[nodiscard]] std::optional<std::string> missing_for_pictures();
+
+/// Draws the scene into a PNG file of width x height pixels, without a screen. It appears whole or
+/// not at all.
+///
+/// @throws InputError  if a piece is inconsistent (a vertex number, a size, a coordinate that is
+///                     not finite), the view or the size is unusable or there is nothing to show
+/// @throws FileError   if the file can't be written or pictures can't be made here
+void render_png(const std::filesystem::path& path, const Scene& scene);
+
+}  // namespace couture::io

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+namespace couture::io {
+
+/// A private X server without a screen (Xvfb), to which the environment variable DISPLAY points
+/// while the object lives. Pictures come out alike on a desktop, over ssh and in a container.
+class VirtualDisplay {
+  public:
+    /// @throws FileError  if Xvfb is missing (names the package) or does not start
+    VirtualDisplay();
+    ~VirtualDisplay();
+    VirtualDisplay(const VirtualDisplay&) = delete;
+    VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+  private:
+    pid_t server_ = -1;
+    std::optional<std::string> previous_;
+};
+
+}  // namespace couture::io
