@@ -296,9 +296,9 @@ MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
     }
     MatrixX x = dof_positions(space);
     const MatrixX box = space.geometry().bounding_box();
-    Vector3 centre = Vector3::Zero();
-    centre.head(box.rows()) = 0.5 * (box.col(0) + box.col(1));
-    x.rowwise() -= centre.transpose();
+    for (Eigen::Index k = 0; k < box.rows(); ++k) {
+        x.col(k).array() -= 0.5 * (box(k, 0) + box(k, 1));
+    }
     const std::string axes = "xyz";
     for (int a = 0; a < d; ++a) {
         names.push_back(fmt::format("translation along {}", axes[a]));
@@ -311,10 +311,17 @@ MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
         for (int a = 0; a < d; ++a) {
             modes(nc * i + a, a) = 1.0;
         }
+        // e_a x position: component b = a + 1 gets -x_c, component c = a + 2 gets x_b.
         for (int a = d == 2 ? 2 : 0; a < 3; ++a) {
-            const Vector3 u = Vector3::Unit(a).cross(Vector3(x.row(i)));
             const int column = d == 2 ? d : d + a;
-            modes.block(nc * i, column, nc, 1) = u.head(nc);
+            const int b = (a + 1) % 3;
+            const int c = (a + 2) % 3;
+            if (b < nc) {
+                modes(nc * i + b, column) = -x(i, c);
+            }
+            if (c < nc) {
+                modes(nc * i + c, column) = x(i, b);
+            }
         }
     }
     return modes;

@@ -309,13 +309,11 @@ SparseMatrix assemble_foundations(const Space<d>& space, const Problem& problem,
     return result;
 }
 
-#define COUTURE_INSTANTIATE(d)                                                           \
-    template MatrixX assemble_loads(const Space<d>&, const Problem&, const std::string&, \
-                                    std::optional<int>);                                 \
-    template SparseMatrix assemble_foundations(const Space<d>&, const Problem&,          \
-                                               std::optional<int>);                      \
-    COUTURE_INSTANTIATE(2)
-COUTURE_INSTANTIATE(3)
-#undef COUTURE_INSTANTIATE
+template MatrixX assemble_loads(const Space<2>&, const Problem&, const std::string&,
+                                std::optional<int>);
+template MatrixX assemble_loads(const Space<3>&, const Problem&, const std::string&,
+                                std::optional<int>);
+template SparseMatrix assemble_foundations(const Space<2>&, const Problem&, std::optional<int>);
+template SparseMatrix assemble_foundations(const Space<3>&, const Problem&, std::optional<int>);
 
 }  // namespace couture::iga
