@@ -1,5 +1,6 @@
 #include "iga/assembly/loads.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 
