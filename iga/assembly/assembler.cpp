@@ -61,6 +61,7 @@ void add_directly(BlockMatrix& matrix, const Space<d>& space, int patch,
         const int i = tensor.index(row.i);
         std::int64_t entry = matrix.row_begin[dofs[i]];
         const double w_i = weights.size() > 0 ? weights[i] : 1.0;
+        const int pair_stride = row.pair_stride();
         for_upper_entries<d>(row, sizes, ranges, [&](int j, int o0, int o1, int lane) {
             const int column = dofs[j];
             while (matrix.columns[entry] < column) {
@@ -68,8 +69,9 @@ void add_directly(BlockMatrix& matrix, const Space<d>& space, int patch,
             }
             const double w = weights.size() > 0 ? w_i * weights[j] : 1.0;
             double* block = &matrix.values[entry * n * n];
+            const double* from = row.entry(o0, o1, lane);
             for (int pair = 0; pair < n * n; ++pair) {
-                block[pair] += w * row.value(pair, o0, o1, lane);
+                block[pair] += w * from[pair * pair_stride];
             }
         });
     });
@@ -113,12 +115,14 @@ PatchRows<d> integrate_rows(const Space<d>& space, int patch, int block_size,
         const int i = tensor.index(row.i);
         std::int64_t entry = rows.begin[i];
         const double w_i = weights.size() > 0 ? weights[i] : 1.0;
+        const int pair_stride = row.pair_stride();
         for_upper_entries<d>(row, sizes, ranges, [&](int j, int o0, int o1, int lane) {
             const double w = weights.size() > 0 ? w_i * weights[j] : 1.0;
             rows.columns[entry] = j;
             double* block = &rows.values[entry * n * n];
+            const double* from = row.entry(o0, o1, lane);
             for (int pair = 0; pair < n * n; ++pair) {
-                block[pair] = w * row.value(pair, o0, o1, lane);
+                block[pair] = w * from[pair * pair_stride];
             }
             ++entry;
         });

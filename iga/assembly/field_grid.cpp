@@ -30,17 +30,18 @@ template <int d>
 void FieldGrid<d>::evaluate(int i_plane, const GeometryPlane<d>& plane) {
     spline_.evaluate(i_plane, work_);
     const int nc = n_components_;
+    const int stride = spline_.stride();
     values_.resize(nc, plane.n_points);
     gradients_.resize(nc, static_cast<Eigen::Index>(d) * plane.n_points);
     for (int q = 0; q < plane.n_points; ++q) {
-        const double* U = &work_[static_cast<std::size_t>(q) * (d + 1) * nc];
+        const double* U = &work_[static_cast<std::size_t>(q) * (d + 1) * stride];
         const double W = is_rational_ ? plane.denominator[q] : 1.0;
         for (int a = 0; a < nc; ++a) {
             values_(a, q) = U[a] / W;
             for (int s = 0; s < d; ++s) {
                 double sum = 0.0;
                 for (int k = 0; k < d; ++k) {
-                    double slope = U[(1 + k) * nc + a];
+                    double slope = U[(1 + k) * stride + a];
                     if (is_rational_) {
                         slope = (slope - values_(a, q) * plane.denominator_gradient[d * q + k]) / W;
                     }

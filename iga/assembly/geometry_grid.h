@@ -32,8 +32,9 @@ class SplineGrid {
     SplineGrid(const TensorSpace<d>& space, const TensorSpace<d>& elements, const MatrixX& rows,
                const std::array<QuadratureLine, d>& lines);
 
-    [[nodiscard]] int n_columns() const { return n_columns_; }
-    /// Fills `values` with [point][0: value, 1 + k: derivative by xi_k][column], direction 0 of the
+    /// Numbers from one row of columns to the next: the columns rounded up to full vectors.
+    [[nodiscard]] int stride() const { return stride_; }
+    /// Fills `values` with [point][0: value, 1 + k: derivative by xi_k][stride], direction 0 of the
     /// points fastest.
     void evaluate(int i_plane, Buffer<double>& values) const;
 
@@ -41,7 +42,7 @@ class SplineGrid {
     std::array<const QuadratureLine*, d> lines_;
     std::array<BasisTable, d> tables_;
     std::array<int, d> sizes_{};
-    int n_columns_;
+    int stride_;
     Buffer<double> rows_;
 };
 

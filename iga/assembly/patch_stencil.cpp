@@ -20,7 +20,7 @@ constexpr int lanes_of = sizeof(V) / sizeof(double);
 template <int d>
 struct PatchIntegrator<d>::Workspace {
     GeometryPlane<d> plane;
-    /// [pair][point][slot of the ring][(s, t)]: parametric coefficients of the planes in use.
+    /// [slot of the ring][pair][point][(s, t)]: parametric coefficients of the planes in use.
     Buffer<double> ring;
     int ring_length = 1;
     int coefficient_stride = 9;
@@ -30,7 +30,9 @@ struct PatchIntegrator<d>::Workspace {
     Buffer<double> line_sums;
     /// [pair][j_0][j_1][vector]
     Buffer<double> row;
-    MatrixX A;
+    /// Values of A's entries at four points.
+    std::vector<Vector4d> values;
+    std::vector<double> A;
 };
 
 template <int d>
@@ -65,10 +67,114 @@ PatchIntegrator<d>::PatchIntegrator(int i_patch, const Patch<d>& geometry,
     GeometryPlane<d> plane;
     grid_.evaluate(0, plane);
     orientation_ = plane.determinant[0] < 0.0 ? -1.0 : 1.0;
+    std::vector<double> A(form.size(), 0.0);
     if (!form.varies) {
-        constant_coefficients_ =
-            MatrixX::Zero((d + 1) * (d + 1), form.n_components * form.n_components);
-        form.coefficients(i_patch, Vector3::Zero(), constant_coefficients_.data());
+        form.coefficients(i_patch_, Vector3::Zero(), A.data());
+    }
+    const int nc = form.n_components;
+    const int n_slots = form.has_value ? d + 1 : d;
+    for (int a = 0; a < nc; ++a) {
+        for (int b = a; b < nc; ++b) {
+            for (int s = 0; s < n_slots; ++s) {
+                for (int t = 0; t < n_slots; ++t) {
+                    const double value = A[((a * nc + b) * (d + 1) + s) * (d + 1) + t];
+                    if (form.varies || value != 0.0) {
+                        entries_.push_back({a, b, s, t, value});
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Coefficients of the plane in `workspace.plane` by the parametric slots: with T from parametric
+/// to physical slots, C = T^T A T times the quadrature weight. Four points at a time.
+template <int d>
+template <int n_physical, int n_parametric>
+void PatchIntegrator<d>::transform_coefficients(int slot, Workspace& workspace) const {
+    const GeometryPlane<d>& plane = workspace.plane;
+    const int nc = form_.n_components;
+    const int n = d == 2 ? d + 1 : n_parametric;
+    const int stride = workspace.coefficient_stride;
+    const std::size_t pair_size = static_cast<std::size_t>(plane.n_points) * stride;
+    double* slot_begin = &workspace.ring[slot * pair_size * nc * nc];
+    for (int first = 0; first < plane.n_points; first += 4) {
+        const int n_here = std::min(4, plane.n_points - first);
+        Vector4d T[n_physical][n_parametric];
+        Vector4d weighted[n_physical][n_parametric];
+        const auto gather = [&](const Buffer<double>& from, int width, int at) {
+            const double* start = &from[static_cast<std::size_t>(first) * width + at];
+            const int last = n_here - 1;
+            return Vector4d{start[0], start[std::min(1, last) * width],
+                            start[std::min(2, last) * width], start[std::min(3, last) * width]};
+        };
+        const Vector4d W = gather(plane.denominator, 1, 0);
+        const Vector4d det = gather(plane.determinant, 1, 0);
+        const Vector4d factor = gather(plane.quadrature_weight, 1, 0) * det * orientation_;
+        for (int s = 0; s < d; ++s) {
+            Vector4d value_slot{};
+            for (int k = 0; k < d; ++k) {
+                const Vector4d inverse = gather(plane.inverse_jacobian, d * d, d * k + s);
+                T[s][k] = inverse / W;
+                if constexpr (n_parametric > d) {
+                    value_slot -= inverse * gather(plane.denominator_gradient, d, k);
+                }
+            }
+            if constexpr (n_parametric > d) {
+                T[s][d] = value_slot / (W * W);
+            }
+        }
+        if constexpr (n_physical > d) {
+            for (int k = 0; k < d; ++k) {
+                T[d][k] = Vector4d{};
+            }
+            T[d][d] = 1.0 / W;
+        }
+        for (int s = 0; s < n_physical; ++s) {
+            for (int k = 0; k < n_parametric; ++k) {
+                weighted[s][k] = factor * T[s][k];
+            }
+        }
+        if (form_.varies) {
+            for (int q = 0; q < n_here; ++q) {
+                const double* x = &plane.x[3 * static_cast<std::size_t>(first + q)];
+                std::fill(workspace.A.begin(), workspace.A.end(), 0.0);
+                form_.coefficients(i_patch_, Vector3(x[0], x[1], x[2]), workspace.A.data());
+                for (std::size_t e = 0; e < entries_.size(); ++e) {
+                    const Entry& entry = entries_[e];
+                    workspace.values[e][q] =
+                        workspace
+                            .A[((entry.a * nc + entry.b) * (d + 1) + entry.s) * (d + 1) + entry.t];
+                }
+            }
+        }
+        std::size_t e = 0;
+        while (e < entries_.size()) {
+            const int a = entries_[e].a;
+            const int b = entries_[e].b;
+            Vector4d AT[n_physical][n_parametric] = {};
+            for (; e < entries_.size() && entries_[e].a == a && entries_[e].b == b; ++e) {
+                for (int k = 0; k < n_parametric; ++k) {
+                    AT[entries_[e].s][k] += workspace.values[e] * T[entries_[e].t][k];
+                }
+            }
+            double* here =
+                slot_begin + (a * nc + b) * pair_size + static_cast<std::size_t>(first) * stride;
+            double* mirrored =
+                slot_begin + (b * nc + a) * pair_size + static_cast<std::size_t>(first) * stride;
+            for (int k = 0; k < n_parametric; ++k) {
+                for (int l = 0; l < n_parametric; ++l) {
+                    Vector4d C{};
+                    for (int s = 0; s < n_physical; ++s) {
+                        C += weighted[s][k] * AT[s][l];
+                    }
+                    for (int q = 0; q < n_here; ++q) {
+                        here[q * stride + k * n + l] = C[q];
+                        mirrored[q * stride + l * n + k] = C[q];
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -76,11 +182,6 @@ template <int d>
 void PatchIntegrator<d>::fill_coefficients(int i_plane, int slot, Workspace& workspace) const {
     GeometryPlane<d>& plane = workspace.plane;
     grid_.evaluate(i_plane, plane);
-    const int nc = form_.n_components;
-    // Physical slots times this give parametric ones.
-    Eigen::Matrix<double, d + 1, d + 1> T = Eigen::Matrix<double, d + 1, d + 1>::Zero();
-    const std::size_t pair_stride = static_cast<std::size_t>(plane.n_points) *
-                                    workspace.ring_length * workspace.coefficient_stride;
     for (int q = 0; q < plane.n_points; ++q) {
         const double det = plane.determinant[q];
         if (!(det * orientation_ > 0.0)) {
@@ -91,62 +192,13 @@ void PatchIntegrator<d>::fill_coefficients(int i_plane, int slot, Workspace& wor
                 "but of the other sign elsewhere; repair the geometry there",
                 i_patch_, det, format_point(xi), format_point(x));
         }
-        const double factor = plane.quadrature_weight[q] * std::abs(det);
-        const double W = plane.denominator[q];
-        for (int s = 0; s < d; ++s) {
-            double value_slot = 0.0;
-            for (int k = 0; k < d; ++k) {
-                const double inverse = plane.inverse_jacobian[d * d * q + d * k + s];
-                T(s, k) = inverse / W;
-                value_slot -= inverse * plane.denominator_gradient[d * q + k];
-            }
-            T(s, d) = value_slot / (W * W);
-        }
-        T(d, d) = 1.0 / W;
-        const double* A = constant_coefficients_.data();
-        if (form_.varies) {
-            workspace.A.setZero();
-            form_.coefficients(i_patch_,
-                               Vector3(plane.x[3 * q], plane.x[3 * q + 1], plane.x[3 * q + 2]),
-                               workspace.A.data());
-            A = workspace.A.data();
-        }
-        const std::size_t at = (static_cast<std::size_t>(q) * workspace.ring_length + slot) *
-                               workspace.coefficient_stride;
-        for (int a = 0; a < nc; ++a) {
-            for (int b = a; b < nc; ++b) {
-                using RowMajor = Eigen::Matrix<double, d + 1, d + 1, Eigen::RowMajor>;
-                const Eigen::Map<const RowMajor> A_ab(A + (a * nc + b) * (d + 1) * (d + 1));
-                RowMajor C;
-                if (form_.has_value) {
-                    C.noalias() = (factor * T.transpose()).lazyProduct((A_ab * T).eval());
-                } else if (is_rational_) {
-                    const Eigen::Matrix<double, d, d + 1> AT =
-                        A_ab.template topLeftCorner<d, d>().lazyProduct(T.template topRows<d>());
-                    C.noalias() = (factor * T.template topRows<d>().transpose()).lazyProduct(AT);
-                } else {
-                    const Matrix<d> T_d = T.template topLeftCorner<d, d>();
-                    const Matrix<d> AT = A_ab.template topLeftCorner<d, d>().lazyProduct(T_d);
-                    C.setZero();
-                    C.template topLeftCorner<d, d>() = (factor * T_d.transpose()).lazyProduct(AT);
-                }
-                double* here = &workspace.ring[(a * nc + b) * pair_stride + at];
-                double* mirrored = &workspace.ring[(b * nc + a) * pair_stride + at];
-                const int n = d == 2 || has_value_ ? d + 1 : d;
-                for (int s = 0; s < n; ++s) {
-                    for (int t = 0; t < n; ++t) {
-                        here[s * n + t] = C(s, t);
-                    }
-                }
-                if (a != b) {
-                    for (int s = 0; s < n; ++s) {
-                        for (int t = 0; t < n; ++t) {
-                            mirrored[s * n + t] = C(t, s);
-                        }
-                    }
-                }
-            }
-        }
+    }
+    if (form_.has_value) {
+        transform_coefficients<d + 1, d + 1>(slot, workspace);
+    } else if (is_rational_) {
+        transform_coefficients<d, d + 1>(slot, workspace);
+    } else {
+        transform_coefficients<d, d>(slot, workspace);
     }
 }
 
@@ -185,52 +237,58 @@ void PatchIntegrator<d>::contract_last(int i, Workspace& workspace) const {
         }
     }
     constexpr int stride = has_value ? 16 : 9;
-    const std::size_t n_points = grid_.points_per_plane();
-    const std::size_t n_chunks = n_points * form_.n_components * form_.n_components;
-    const double* ring = workspace.ring.data();
+    const std::size_t n_chunks = static_cast<std::size_t>(grid_.points_per_plane()) *
+                                 form_.n_components * form_.n_components;
+    const std::size_t slot_size = n_chunks * stride;
     V* out = reinterpret_cast<V*>(workspace.plane_sums.data());
-    for (std::size_t chunk = 0; chunk < n_chunks; ++chunk) {
-        const double* point = ring + chunk * workspace.ring_length * stride;
-        V* target = out + chunk * 9 * n_vectors;
-        for (int v = 0; v < n_vectors; ++v) {
-            V s00{}, s01{}, s02{}, s10{}, s11{}, s12{}, s20{}, s21{}, s22{};
-            for (int u = 0; u < n_used; ++u) {
-                const double* C = point + slots[u] * stride;
-                const V BB = weights[u].BB[v];
-                const V BD = weights[u].BD[v];
-                const V DB = weights[u].DB[v];
-                const V DD = weights[u].DD[v];
-                if constexpr (has_value) {
-                    s00 += C[0] * BB;
-                    s01 += C[1] * BB;
-                    s02 += C[2] * BD + C[3] * BB;
-                    s10 += C[4] * BB;
-                    s11 += C[5] * BB;
-                    s12 += C[6] * BD + C[7] * BB;
-                    s20 += C[8] * DB + C[12] * BB;
-                    s21 += C[9] * DB + C[13] * BB;
-                    s22 += C[10] * DD + C[11] * DB + C[14] * BD + C[15] * BB;
-                } else {
-                    s00 += C[0] * BB;
-                    s01 += C[1] * BB;
-                    s02 += C[2] * BD;
-                    s10 += C[3] * BB;
-                    s11 += C[4] * BB;
-                    s12 += C[5] * BD;
-                    s20 += C[6] * DB;
-                    s21 += C[7] * DB;
-                    s22 += C[8] * DD;
+    // Few planes at a time over a block of points: their coefficients stream through the cache,
+    // the sums stay in it.
+    constexpr std::size_t block_size = 64;
+    for (std::size_t block = 0; block < n_chunks; block += block_size) {
+        const std::size_t block_end = std::min(block + block_size, n_chunks);
+        for (int group = 0; group < n_used; group += m) {
+            for (std::size_t chunk = block; chunk < block_end; ++chunk) {
+                V* target = out + chunk * 9 * n_vectors;
+                for (int v = 0; v < n_vectors; ++v) {
+                    V sums[9] = {};
+                    if (group > 0) {
+                        for (int c = 0; c < 9; ++c) {
+                            sums[c] = target[c * n_vectors + v];
+                        }
+                    }
+                    for (int u = group; u < group + m; ++u) {
+                        const double* C = &workspace.ring[slots[u] * slot_size + chunk * stride];
+                        const V BB = weights[u].BB[v];
+                        const V BD = weights[u].BD[v];
+                        const V DB = weights[u].DB[v];
+                        const V DD = weights[u].DD[v];
+                        if constexpr (has_value) {
+                            sums[0] += C[0] * BB;
+                            sums[1] += C[1] * BB;
+                            sums[2] += C[2] * BD + C[3] * BB;
+                            sums[3] += C[4] * BB;
+                            sums[4] += C[5] * BB;
+                            sums[5] += C[6] * BD + C[7] * BB;
+                            sums[6] += C[8] * DB + C[12] * BB;
+                            sums[7] += C[9] * DB + C[13] * BB;
+                            sums[8] += C[10] * DD + C[11] * DB + C[14] * BD + C[15] * BB;
+                        } else {
+                            sums[0] += C[0] * BB;
+                            sums[1] += C[1] * BB;
+                            sums[2] += C[2] * BD;
+                            sums[3] += C[3] * BB;
+                            sums[4] += C[4] * BB;
+                            sums[5] += C[5] * BD;
+                            sums[6] += C[6] * DB;
+                            sums[7] += C[7] * DB;
+                            sums[8] += C[8] * DD;
+                        }
+                    }
+                    for (int c = 0; c < 9; ++c) {
+                        target[c * n_vectors + v] = sums[c];
+                    }
                 }
             }
-            target[0 * n_vectors + v] = s00;
-            target[1 * n_vectors + v] = s01;
-            target[2 * n_vectors + v] = s02;
-            target[3 * n_vectors + v] = s10;
-            target[4 * n_vectors + v] = s11;
-            target[5 * n_vectors + v] = s12;
-            target[6 * n_vectors + v] = s20;
-            target[7 * n_vectors + v] = s21;
-            target[8 * n_vectors + v] = s22;
         }
     }
 }
@@ -352,13 +410,17 @@ void PatchIntegrator<d>::integrate_with(
 
     Workspace workspace;
     workspace.coefficient_stride = d == 3 && has_value_ ? 16 : 9;
-    workspace.A.resize((d + 1) * (d + 1), static_cast<Eigen::Index>(n_pairs));
+    workspace.A.resize(form_.size());
+    for (const Entry& entry : entries_) {
+        workspace.values.push_back(Vector4d{} + entry.value);
+    }
     if (d == 3) {
         workspace.ring_length = (directions_[d - 1].degree + 1) * directions_[d - 1].n_points;
         workspace.plane_sums.resize(n_pairs * n_points * 9 * n_lanes);
     }
-    workspace.ring.resize(n_pairs * n_points * workspace.ring_length *
-                          workspace.coefficient_stride);
+    // Pairs without entries, and slots that do not occur, stay zero.
+    workspace.ring.assign(n_pairs * n_points * workspace.ring_length * workspace.coefficient_stride,
+                          0.0);
     workspace.line_sums.resize(n_pairs * grid_.line(0).n_points() * 4 * width_1 * n_lanes);
     workspace.row.resize(n_pairs * width_0 * width_1 * n_lanes);
 

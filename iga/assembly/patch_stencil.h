@@ -17,12 +17,11 @@ struct StencilRow {
     int n_lanes;
     std::array<int, 2> widths;
 
-    [[nodiscard]] double value(int pair, int offset_0, int offset_1, int lane) const {
-        return values[((static_cast<std::size_t>(pair) * widths[0] + offset_0) * widths[1] +
-                       offset_1) *
-                          n_lanes +
-                      lane];
+    /// Entry of pair 0 with a neighbour; the other pairs follow `pair_stride` apart.
+    [[nodiscard]] const double* entry(int offset_0, int offset_1, int lane) const {
+        return values + (offset_0 * widths[1] + offset_1) * n_lanes + lane;
     }
+    [[nodiscard]] int pair_stride() const { return widths[0] * widths[1] * n_lanes; }
 };
 
 /// Integrates a bilinear form over one patch by patch-level sum factorization: every pair of
@@ -61,6 +60,8 @@ class PatchIntegrator {
     struct Workspace;
 
     void fill_coefficients(int i_plane, int slot, Workspace& workspace) const;
+    template <int n_physical, int n_parametric>
+    void transform_coefficients(int slot, Workspace& workspace) const;
     template <typename V, int n_vectors, bool has_value>
     void contract_last(int i, Workspace& workspace) const;
     template <typename V, int n_vectors, int n>
@@ -80,7 +81,12 @@ class PatchIntegrator {
     std::array<int, d> sizes_{};
     std::array<Direction, d> directions_;
     VectorX weights_;
-    MatrixX constant_coefficients_;
+    /// Entries of A that may differ from zero, pairs a <= b only.
+    struct Entry {
+        int a, b, s, t;
+        double value;
+    };
+    std::vector<Entry> entries_;
 };
 
 }  // namespace couture::iga

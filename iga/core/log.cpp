@@ -14,6 +14,7 @@ spdlog::logger& logger() {
     static const auto instance = [] {
         auto created = spdlog::stderr_color_mt("couture");
         created->set_pattern("%^%v%$");
+        created->set_level(spdlog::level::warn);
         return created;
     }();
     return *instance;

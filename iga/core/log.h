@@ -9,7 +9,7 @@
 
 namespace couture::log {
 
-/// What is printed on standard error; results go to standard output.
+/// What is printed on standard error (warnings, unless told); results go to standard output.
 enum class Level { quiet, warnings, progress, detail };
 void set_level(Level level);
 

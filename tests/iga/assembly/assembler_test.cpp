@@ -111,12 +111,11 @@ MultiPatch<3> curved_volume(int degree) {
                                              refine(patch.knots(1), std::max(degree, 2), 2),
                                              refine(patch.knots(2), degree, 2)};
     patch = refine<3>(patch, refinements);
-    const std::vector<double> repeated = {0.25};
-    std::array<Refinement, 3> again = {insert_knots(patch.knots(0), repeated),
-                                       prolongation_to(patch.knots(1), patch.knots(1)),
-                                       insert_knots(patch.knots(2), std::vector<double>(1, 0.5))};
     if (degree > 1) {
-        patch = refine<3>(patch, again);
+        // Uneven spans, and a double knot in the last direction.
+        patch = refine<3>(patch, {insert_knots(patch.knots(0), std::vector<double>{0.25}),
+                                  insert_knots(patch.knots(1), std::vector<double>{}),
+                                  insert_knots(patch.knots(2), std::vector<double>{0.5})});
     }
     part.patches.push_back(patch);
     return part;
