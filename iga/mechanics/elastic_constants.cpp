@@ -8,11 +8,19 @@
 
 namespace couture::iga {
 
-ElasticStiffness isotropic_stiffness(double youngs_modulus, double poissons_ratio) {
-    if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus)) {
-        throw InputError("isotropic material: Young's modulus = {}; must be positive",
-                         youngs_modulus);
+namespace {
+
+void check_modulus(const char* material, const char* name, double modulus) {
+    if (!(modulus > 0.0) || !std::isfinite(modulus)) {
+        throw InputError("{} material: {} = {}; must be positive and finite", material, name,
+                         modulus);
     }
+}
+
+}  // namespace
+
+ElasticStiffness isotropic_stiffness(double youngs_modulus, double poissons_ratio) {
+    check_modulus("isotropic", "Young's modulus", youngs_modulus);
     if (!(poissons_ratio > -1.0 && poissons_ratio < 0.5)) {
         throw InputError(
             "isotropic material: Poisson's ratio = {}; must lie between -1 and 0.5 "
@@ -32,11 +40,11 @@ ElasticStiffness isotropic_stiffness(double youngs_modulus, double poissons_rati
 }
 
 ElasticStiffness orthotropic_stiffness(const OrthotropicConstants& constants) {
+    constexpr std::array<const char*, 3> youngs_names = {"E_1", "E_2", "E_3"};
+    constexpr std::array<const char*, 3> shear_names = {"G_23", "G_13", "G_12"};
     for (int i = 0; i < 3; ++i) {
-        if (!(constants.youngs_moduli[i] > 0.0) || !(constants.shear_moduli[i] > 0.0)) {
-            throw InputError("orthotropic material: moduli {} = {}, {}; must be positive", i + 1,
-                             constants.youngs_moduli[i], constants.shear_moduli[i]);
-        }
+        check_modulus("orthotropic", youngs_names[i], constants.youngs_moduli[i]);
+        check_modulus("orthotropic", shear_names[i], constants.shear_moduli[i]);
     }
     const auto& E = constants.youngs_moduli;
     const auto& [nu_23, nu_13, nu_12] = constants.poissons_ratios;
@@ -49,7 +57,7 @@ ElasticStiffness orthotropic_stiffness(const OrthotropicConstants& constants) {
     compliance(0, 2) = compliance(2, 0) = -nu_13 / E[0];
     compliance(1, 2) = compliance(2, 1) = -nu_23 / E[1];
     const Eigen::LLT<Matrix<6>> factor(compliance);
-    if (factor.info() != Eigen::Success) {
+    if (factor.info() != Eigen::Success || !compliance.allFinite()) {
         throw InputError(
             "orthotropic material: Poisson's ratios nu_23 = {}, nu_13 = {}, nu_12 = {} "
             "make the stiffness indefinite; |nu_ij| must be below sqrt(E_i / E_j) and "

@@ -1,6 +1,8 @@
 #include "iga/post/stress.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <array>
 #include <cmath>
 
 #include "iga/assembly/assembler.h"
@@ -50,11 +52,14 @@ StressState state(const Problem& problem, const Material& material, int patch,
     if (problem.kinematics == Kinematics::plane_stress) {
         const Vector<6> elastic = result.strain - thermal;
         result.stress = elastic_stress<d>(problem, material, elastic);
-        // No stress across the plane: the strain there follows.
-        const ElasticStiffness& D = material.stiffness;
-        result.strain[2] =
-            thermal[2] -
-            (D(2, 0) * elastic[0] + D(2, 1) * elastic[1] + D(2, 5) * elastic[5]) / D(2, 2);
+        // No stress across the plane: the strains there follow.
+        const std::array<int, 3> plane = {0, 1, 5};
+        const std::array<int, 3> across = {2, 3, 4};
+        const Matrix<3> D_aa = material.stiffness(across, across);
+        const Matrix<3> D_ap = material.stiffness(across, plane);
+        const Vector3 in_plane = elastic(plane);
+        const Vector3 thermal_across = thermal(across);
+        result.strain(across) = thermal_across - D_aa.inverse() * (D_ap * in_plane);
         return result;
     }
     result.stress = elastic_stress<d>(problem, material, result.strain - thermal);
