@@ -34,3 +34,4 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
 find_package(pugixml REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)

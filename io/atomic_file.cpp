@@ -5,14 +5,51 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "iga/core/error.h"
 
 namespace couture::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::mutex temporaries_mutex;
+std::set<fs::path> temporaries;
+
+/// Keeps a path in the list of temporary files while it lives.
+class Listed {
+  public:
+    explicit Listed(fs::path path) : path_(std::move(path)) {
+        const std::lock_guard lock(temporaries_mutex);
+        temporaries.insert(path_);
+    }
+    ~Listed() {
+        const std::lock_guard lock(temporaries_mutex);
+        temporaries.erase(path_);
+    }
+    Listed(const Listed&) = delete;
+    Listed& operator=(const Listed&) = delete;
+
+  private:
+    fs::path path_;
+};
+
+}  // namespace
+
+void remove_temporaries() {
+    // Never unlocked: nothing may be renamed to its final name any more.
+    temporaries_mutex.lock();
+    std::error_code code;
+    for (const fs::path& path : temporaries) {
+        fs::remove(path, code);
+    }
+}
 
 void write_atomically(const fs::path& path,
                       const std::function<void(const fs::path& temporary)>& write) {
@@ -29,6 +66,7 @@ void write_atomically(const fs::path& path,
     }
     const fs::path temporary = folder / fmt::format(".{}.{}{}", path.stem().string(), ::getpid(),
                                                     path.extension().string());
+    const Listed listed(temporary);
     try {
         write(temporary);
     } catch (...) {

@@ -16,6 +16,10 @@ void write_atomically(const std::filesystem::path& path,
 /// The same for a text that is at hand.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
+/// Removes the temporary files of all writes under way: for a program that is about to end. Writes
+/// that go on afterwards wait for ever.
+void remove_temporaries();
+
 /// The whole file. @throws FileError  if it is missing, a folder or can't be read
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
@@ -237,6 +239,40 @@ Deck parse_deck(const std::string& text, const fs::path& path,
     top.finish();
     context.mistakes.throw_if_any();
     return deck;
+}
+
+std::string located_in(const Deck& deck, const std::string& source, const std::string& word,
+                       const std::string& message) {
+    const std::string name = deck.path.filename().string();
+    TomlPlace place;
+    place.source = source;
+    if (!source.starts_with(name + ":")) {
+        return located(place, message);
+    }
+    const int first_line = std::atoi(source.c_str() + name.size() + 1);
+    std::istringstream lines(deck.text);
+    std::string line;
+    for (int i = 1; std::getline(lines, line); ++i) {
+        if (i < first_line) {
+            continue;
+        }
+        if (i > first_line && line.starts_with('[')) {
+            break;
+        }
+        const std::size_t column = word.empty() ? std::string::npos : line.find(word);
+        if (i == first_line || column != std::string::npos) {
+            place.line = i;
+            place.source = fmt::format("{}:{}", name, i);
+            place.text = line;
+            place.column = column == std::string::npos ? 0 : static_cast<int>(column);
+            place.length =
+                static_cast<int>(column == std::string::npos ? line.size() : word.size());
+        }
+        if (word.empty() || column != std::string::npos) {
+            break;
+        }
+    }
+    return located(place, message);
 }
 
 Deck read_deck(const fs::path& path, const std::vector<std::string>& overrides) {

@@ -96,4 +96,9 @@ struct Deck {
 [[nodiscard]] Deck parse_deck(const std::string& text, const std::filesystem::path& path,
                               const std::vector<std::string>& overrides = {});
 
+/// `message` with the line of the deck's text that it is about: the first line at or below
+/// `source` ("part.toml:14") in the same section that holds `word`.
+[[nodiscard]] std::string located_in(const Deck& deck, const std::string& source,
+                                     const std::string& word, const std::string& message);
+
 }  // namespace couture::io

@@ -10,7 +10,7 @@ namespace couture::io {
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     const std::optional<std::string> nearest = nearest_name(name, candidates);
-    const int longest_slip = std::max(1, static_cast<int>(name.size()) / 3);
+    const int longest_slip = std::max(1, (static_cast<int>(name.size()) + 1) / 3);
     if (!nearest || edit_distance(name, *nearest) > longest_slip) {
         return {};
     }

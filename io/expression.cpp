@@ -99,10 +99,11 @@ Expression::Expression(const std::string& text) {
     source_ = std::make_shared<const Source>(Source{text, n_expressions++});
     Evaluator evaluator(text);
     try {
+        // First: GetUsedVar takes an unknown name for a variable.
+        static_cast<void>(evaluator.parser.Eval());
         for (const auto& [name, address] : evaluator.parser.GetUsedVar()) {
             variables_.push_back(name);
         }
-        static_cast<void>(evaluator.parser.Eval());
     } catch (const mu::Parser::exception_type& error) {
         refuse(text, error);
     }

@@ -97,7 +97,8 @@ int TextCursor::integer(std::string_view what, int low, int high) {
     long value = 0;
     const auto [end, code] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (code != std::errc() || end != found.data() + found.size() || value < low || value > high) {
-        fail("found {}; expected {}, a whole number from {} to {}", in_quotes(found), what, low, high);
+        fail("found {}; expected {}, a whole number from {} to {}", in_quotes(found), what, low,
+             high);
     }
     return static_cast<int>(value);
 }

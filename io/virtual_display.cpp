@@ -42,6 +42,13 @@ void stop(pid_t server) {
 /// client, even if this process is killed.
 pid_t start_server(int pipe) {
     constexpr int server_pipe = 3;
+    // The server must end on SIGTERM even where this process blocks it.
+    posix_spawnattr_t attributes;
+    sigset_t no_signals;
+    sigemptyset(&no_signals);
+    ::posix_spawnattr_init(&attributes);
+    ::posix_spawnattr_setsigmask(&attributes, &no_signals);
+    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
@@ -57,7 +64,8 @@ pid_t start_server(int pipe) {
     }
     pid_t server = -1;
     const int reason =
-        ::posix_spawnp(&server, "Xvfb", &actions, nullptr, arguments.data(), environ);
+        ::posix_spawnp(&server, "Xvfb", &actions, &attributes, arguments.data(), environ);
+    ::posix_spawnattr_destroy(&attributes);
     ::posix_spawn_file_actions_destroy(&actions);
     if (reason != 0) {
         throw FileError(

@@ -1,0 +1,123 @@
+#include "drivers/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "iga/core/log.h"
+#include "iga/core/parallel.h"
+#include "io/did_you_mean.h"
+
+namespace couture::drivers {
+
+namespace {
+
+constexpr int max_threads = 1024;
+
+CLI::App* add_command(CLI::App& app, Command& command, const std::string& name,
+                      const std::string& what, std::function<int()> run) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    CommonOptions& common = command.common;
+    sub->add_flag("--json", common.json,
+                  "print one JSON object on standard output, all else on standard error");
+    sub->add_flag("--quiet", common.quiet, "print warnings and errors only");
+    sub->add_flag("--verbose", common.verbose, "print details");
+    sub->add_option("--threads", common.n_threads, "number of threads (default: all cores)")
+        ->check(CLI::Range(1, max_threads));
+    sub->callback([&command, run] { command.run = run; });
+    return sub;
+}
+
+void add_deck_options(CLI::App* sub, SolveOptions& options) {
+    sub->add_option("deck", options.deck, "the deck (TOML)")->required();
+    sub->add_option("--set", options.overrides,
+                    "change a value of the deck: section.key=value (lists by index: "
+                    "pressure.0.value=5)");
+}
+
+/// A word that is no command gets a message of its own: CLI11's names no alternatives.
+std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') {
+        return {};
+    }
+    std::vector<std::string> names;
+    for (const CLI::App* sub : app.get_subcommands({})) {
+        names.push_back(sub->get_name());
+    }
+    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) {
+        return {};
+    }
+    return fmt::format(
+        "there is no command '{}' in version {}{} There are {}", argv[1], COUTURE_VERSION,
+        io::did_you_mean(argv[1], names).empty() ? "." : io::did_you_mean(argv[1], names),
+        io::quoted_list(names));
+}
+
+void apply(const CommonOptions& common) {
+    log::set_level(common.quiet     ? log::Level::warnings
+                   : common.verbose ? log::Level::detail
+                                    : log::Level::progress);
+    if (common.n_threads > 0) {
+        set_n_threads(common.n_threads);
+    }
+}
+
+}  // namespace
+
+std::optional<int> read_command_line(int argc, char** argv, Command& command) {
+    // The callbacks outlive this function.
+    const auto solve = std::make_shared<SolveOptions>();
+    const auto compare = std::make_shared<CompareOptions>();
+    const auto from = std::make_shared<std::string>();
+    const auto to = std::make_shared<std::string>();
+    CLI::App app("Couture: isogeometric analysis of solids");
+    app.set_version_flag("--version", "couture " COUTURE_VERSION);
+    app.require_subcommand(1);
+
+    CLI::App* sub = add_command(app, command, "solve", "run a deck",
+                                [&command, solve] { return run_solve(*solve, command.common); });
+    add_deck_options(sub, *solve);
+    sub->add_option("--out", solve->out, "folder of the results (default: out/<deck name>)");
+    sub->add_flag("--linear", solve->linear,
+                  "write linear cells for programs that read no splines");
+    sub->add_flag("--png", solve->png, "draw the deformed part");
+
+    sub = add_command(app, command, "check", "validate a deck without running it",
+                      [&command, solve] { return run_check(*solve, command.common); });
+    add_deck_options(sub, *solve);
+
+    sub = add_command(app, command, "info", "say what a spline file holds",
+                      [&command, from] { return run_info(*from, command.common); });
+    sub->add_option("file", *from, "a spline file")->required();
+
+    sub = add_command(app, command, "convert", "write a spline file in another format",
+                      [&command, from, to] { return run_convert(*from, *to, command.common); });
+    sub->add_option("in", *from, "a spline file, or a deck (its geometry)")->required();
+    sub->add_option("out", *to, "the extension decides: .xml, .mesh, .txt, .inp, .h5")->required();
+
+    sub = add_command(app, command, "compare", "say what differs between two results",
+                      [&command, compare] { return run_compare(*compare, command.common); });
+    sub->add_option("first", compare->first, "a result (.json) or a spline file")->required();
+    sub->add_option("second", compare->second, "another of the same kind")->required();
+    sub->add_option("--tolerance", compare->tolerance, "relative difference that counts as none")
+        ->check(CLI::NonNegativeNumber);
+
+    if (const auto message = unknown_command(app, argc, argv)) {
+        fmt::print(stderr, "couture: {}\n", *message);
+        return ExitCode::bad_input;
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        fmt::print(stderr, "couture: {}; see couture --help\n", error.what());
+        return ExitCode::bad_input;
+    }
+    apply(command.common);
+    return {};
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace couture::drivers {
+
+/// Exit codes of the program.
+enum ExitCode : int { done = 0, run_failed = 1, bad_input = 2, interrupted = 130 };
+
+/// What every command takes.
+struct CommonOptions {
+    /// One JSON object on standard output, everything else on standard error.
+    bool json = false;
+    bool quiet = false;
+    bool verbose = false;
+    /// 0: all cores.
+    int n_threads = 0;
+};
+
+struct SolveOptions {
+    std::filesystem::path deck;
+    std::vector<std::string> overrides;
+    /// Empty: out/<deck name> below the working folder.
+    std::filesystem::path out;
+    bool linear = false;
+    bool png = false;
+};
+
+struct CompareOptions {
+    std::filesystem::path first;
+    std::filesystem::path second;
+    /// Numbers differ if |a - b| > tolerance max(|a|, |b|).
+    double tolerance = 1e-9;
+};
+
+/// Each returns the exit code and throws what is wrong.
+int run_solve(const SolveOptions& options, const CommonOptions& common);
+int run_check(const SolveOptions& options, const CommonOptions& common);
+int run_info(const std::filesystem::path& file, const CommonOptions& common);
+int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
+                const CommonOptions& common);
+int run_compare(const CompareOptions& options, const CommonOptions& common);
+
+}  // namespace couture::drivers

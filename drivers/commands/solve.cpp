@@ -1,0 +1,53 @@
+#include <fmt/core.h>
+
+#include "drivers/commands/commands.h"
+#include "drivers/deck_check.h"
+#include "drivers/job_geometry.h"
+#include "drivers/linear_run.h"
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "io/atomic_file.h"
+#include "io/picture.h"
+
+namespace couture::drivers {
+
+int run_solve(const SolveOptions& options, const CommonOptions& common) {
+    const Timer timer;
+    io::Deck deck = io::read_deck(options.deck, options.overrides);
+    deck.output.linear = deck.output.linear || options.linear;
+    deck.output.png = deck.output.png || options.png;
+    if (deck.output.png) {
+        if (const auto missing = io::missing_for_pictures()) {
+            throw InputError("{}: no picture can be drawn: {}", deck.path.string(), *missing);
+        }
+    }
+    const std::string name = deck.path.stem().string();
+    const std::filesystem::path folder =
+        options.out.empty() ? std::filesystem::path("out") / name : options.out;
+
+    const io::AnyMultiPatch geometry = load_geometry(deck);
+    Summary summary = std::visit(
+        [&]<int d>(const iga::MultiPatch<d>& multipatch) {
+            check_deck<d>(deck, multipatch);
+            return run_linear<d>(deck, multipatch, folder,
+                                 {{"geometry", timer.seconds(), peak_memory()}});
+        },
+        geometry);
+    const std::filesystem::path json_file = folder / (name + ".json");
+    summary.files.push_back(json_file.string());
+    const std::string json = to_json(summary);
+    io::write_text(json_file, json);
+    if (common.json) {
+        fmt::print("{}", json);
+        log::info(to_table(summary));
+    } else if (!common.quiet) {
+        fmt::print("{}", to_table(summary));
+    }
+    if (!summary.passed()) {
+        fmt::print(stderr, "couture: an expectation is not met\n");
+        return ExitCode::run_failed;
+    }
+    return ExitCode::done;
+}
+
+}  // namespace couture::drivers

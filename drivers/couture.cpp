@@ -1,0 +1,50 @@
+#include <fmt/core.h>
+
+#include <new>
+
+#include "drivers/command_line.h"
+#include "drivers/commands/commands.h"
+#include "drivers/interrupt.h"
+#include "drivers/summary.h"
+#include "iga/core/error.h"
+
+namespace {
+
+using namespace couture;
+
+int report(const std::string& message, int exit_code, bool json) {
+    fmt::print(stderr, "couture: {}\n", message);
+    if (json) {
+        fmt::print("{}", drivers::error_json(message, exit_code));
+    }
+    return exit_code;
+}
+
+/// What went wrong decides the exit code: 1 the run, 2 what it was given.
+int run_guarded(const drivers::Command& command) {
+    const bool json = command.common.json;
+    try {
+        return command.run();
+    } catch (const SolverError& error) {
+        return report(error.what(), drivers::ExitCode::run_failed, json);
+    } catch (const Error& error) {
+        return report(error.what(), drivers::ExitCode::bad_input, json);
+    } catch (const std::bad_alloc&) {
+        return report("out of memory; take fewer elements or a lower degree",
+                      drivers::ExitCode::run_failed, json);
+    } catch (const std::exception& error) {
+        return report(fmt::format("unexpected error: {}", error.what()),
+                      drivers::ExitCode::run_failed, json);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    drivers::exit_cleanly_on_interrupt();
+    drivers::Command command;
+    if (const auto exit_code = drivers::read_command_line(argc, argv, command)) {
+        return *exit_code;
+    }
+    return run_guarded(command);
+}

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace couture::drivers {
+
+/// From now on Ctrl-C (SIGINT) and SIGTERM end the program with exit code 130, whatever it is
+/// doing, and leave no half-written file. To be called before any other thread is started.
+void exit_cleanly_on_interrupt();
+
+}  // namespace couture::drivers

@@ -1,0 +1,125 @@
+#include "drivers/job_geometry.h"
+
+#include <sstream>
+
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "meshing/parts/parts.h"
+
+namespace couture::drivers {
+
+namespace {
+
+template <int d>
+void add_sets(const io::GeometrySource& source, iga::MultiPatch<d>& geometry) {
+    for (const auto& [name, entities] : source.sets) {
+        iga::BoundarySet<d> set;
+        for (const std::string& text : entities) {
+            try {
+                set.push_back(parse_entity<d>(text, geometry.n_patches()));
+            } catch (const InputError& error) {
+                throw InputError("{}: set '{}' of [geometry.sets]: {}", source.source, name,
+                                 error.what());
+            }
+        }
+        geometry.boundary_sets[name] = std::move(set);
+    }
+}
+
+template <int d>
+std::array<int, d> elements_per_direction(const io::Discretization& discretization) {
+    const std::vector<int>& given = discretization.elements;
+    if (given.size() != 1 && given.size() != d) {
+        throw InputError(
+            "{}: 'elements' of [discretization] has {} numbers; the geometry has {} "
+            "directions: give one number or {}",
+            discretization.source, given.size(), d, d);
+    }
+    std::array<int, d> result;
+    for (std::size_t k = 0; k < d; ++k) {
+        result[k] = given.size() == 1 ? given[0] : given[k];
+    }
+    return result;
+}
+
+}  // namespace
+
+template <int d>
+iga::PatchEntity<d> parse_entity(const std::string& text, int n_patches) {
+    const auto fail = [&](const std::string& why) {
+        throw InputError(
+            "'{}': {}; write for example 'patch 3 side 0:low' or 'patch 3 {} 0:low "
+            "1:high'",
+            text, why, d == 3 ? "edge" : "corner");
+    };
+    std::istringstream words(text);
+    std::string patch_word;
+    std::string kind;
+    iga::PatchEntity<d> entity;
+    if (!(words >> patch_word >> entity.patch >> kind) || patch_word != "patch") {
+        fail("is no patch entity");
+    }
+    if (entity.patch < 0 || entity.patch >= n_patches) {
+        fail(fmt::format("there is no patch {}, the geometry has patches 0 to {}", entity.patch,
+                         n_patches - 1));
+    }
+    for (std::string word; words >> word;) {
+        const int direction = word.size() > 2 && word[1] == ':' ? word[0] - '0' : -1;
+        const std::string end = word.substr(std::min<std::size_t>(2, word.size()));
+        if (direction < 0 || direction >= d || (end != "low" && end != "high")) {
+            fail(fmt::format("'{}' is none of 0:low ... {}:high", word, d - 1));
+        }
+        entity.position[direction] = end == "low" ? iga::End::low : iga::End::high;
+    }
+    if (kind != "side" && kind != "corner" && (kind != "edge" || d == 2)) {
+        fail(fmt::format("'{}' is none of {}", kind,
+                         d == 3 ? "side, edge, corner" : "side, corner"));
+    }
+    const int dimension = kind == "side" ? d - 1 : kind == "edge" ? 1 : 0;
+    if (entity.dimension() != dimension) {
+        fail(fmt::format("{} {} fixes {} directions", kind == "edge" ? "an" : "a", kind,
+                         d - dimension));
+    }
+    return entity;
+}
+
+io::AnyMultiPatch load_geometry(const io::Deck& deck) {
+    io::AnyMultiPatch geometry;
+    if (!deck.geometry.file.empty()) {
+        io::SplineFile file = io::read_splines(deck.geometry.file);
+        for (const std::string& note : file.notes) {
+            log::info(fmt::format("{}: {}", deck.geometry.file.filename().string(), note));
+        }
+        geometry = std::move(file.multipatch);
+    } else {
+        try {
+            geometry = meshing::make_part(deck.geometry.part, deck.geometry.parameters);
+        } catch (const InputError& error) {
+            throw InputError("{}: {}", deck.geometry.source, error.what());
+        }
+    }
+    std::visit([&](auto& multipatch) { add_sets(deck.geometry, multipatch); }, geometry);
+    return geometry;
+}
+
+template <int d>
+iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
+    const io::Discretization& discretization = deck.discretization;
+    std::optional<std::array<int, d>> elements;
+    if (!discretization.elements.empty()) {
+        elements = elements_per_direction<d>(discretization);
+    }
+    try {
+        return std::make_shared<const iga::Space<d>>(
+            iga::refine<d>(geometry, discretization.degree, elements));
+    } catch (const InputError& error) {
+        throw InputError("{}: [discretization]: {}", discretization.source, error.what());
+    }
+}
+
+template iga::PatchEntity<2> parse_entity<2>(const std::string&, int);
+template iga::PatchEntity<3> parse_entity<3>(const std::string&, int);
+template iga::SpacePtr<2> make_space<2>(const io::Deck&, const iga::MultiPatch<2>&);
+template iga::SpacePtr<3> make_space<3>(const io::Deck&, const iga::MultiPatch<3>&);
+
+}  // namespace couture::drivers

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "iga/topology/space.h"
+#include "io/deck.h"
+#include "io/spline_file.h"
+
+namespace couture::drivers {
+
+/// The deck's geometry (file or built-in part) with the sets that the deck adds.
+///
+/// @throws FileError, InputError, TopologyError  what reading or building it throws, and for a set
+///                                               whose entities can't be read or do not exist
+[[nodiscard]] io::AnyMultiPatch load_geometry(const io::Deck& deck);
+
+/// "patch 3 side 0:low", "patch 3 edge 0:low 2:high" or "patch 3 corner 0:low 1:low 2:high".
+/// @throws InputError  for anything else, and for a patch that does not exist
+template <int d>
+[[nodiscard]] iga::PatchEntity<d> parse_entity(const std::string& text, int n_patches);
+
+/// The space that the deck's discretization makes of the geometry.
+/// @throws InputError  naming where the discretization was written
+template <int d>
+[[nodiscard]] iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geometry);
+
+}  // namespace couture::drivers

@@ -1,0 +1,120 @@
+#include "drivers/linear_run.h"
+
+#include "drivers/hash.h"
+#include "drivers/job_geometry.h"
+#include "drivers/probes.h"
+#include "drivers/result_files.h"
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "iga/core/parallel.h"
+
+namespace couture::drivers {
+
+namespace {
+
+constexpr double gigabyte = 1024.0 * 1024.0 * 1024.0;
+/// Phases that take longer are announced when they end.
+constexpr double long_phase_seconds = 1.0;
+
+template <int d>
+void check_memory(const iga::MultiPatch<d>& refined, int n_components) {
+    const double needed = estimated_matrix_memory<d>(refined, n_components);
+    const auto available = static_cast<double>(available_memory());
+    if (needed > available) {
+        throw SolverError(
+            "the matrix of {} control points takes about {:.1f} GB, {:.1f} GB of "
+            "memory are free; take fewer 'elements' or a lower 'degree' in "
+            "[discretization]",
+            refined.n_control_points(), needed / gigabyte, available / gigabyte);
+    }
+}
+
+CaseSummary to_summary(const auto& result) {
+    return {result.name,      result.energy, result.applied_force, result.foundation_force,
+            result.reactions, result.balance};
+}
+
+}  // namespace
+
+template <int d>
+double estimated_matrix_memory(const iga::MultiPatch<d>& refined, int n_components) {
+    double bytes = 0.0;
+    const double block_bytes = 8.0 * n_components * n_components + 4.0;
+    for (const iga::Patch<d>& patch : refined.patches) {
+        double blocks = 1.0;
+        for (const iga::KnotVector& knots : patch.space().knots) {
+            blocks *= knots.n_basis() * (2.0 * knots.degree() + 1.0);
+        }
+        bytes += 0.5 * blocks * block_bytes;
+    }
+    return bytes;
+}
+
+template <int d>
+Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                   const std::filesystem::path& folder, std::vector<Phase> phases) {
+    const auto add_phase = [&](const std::string& name, double seconds) {
+        phases.push_back({name, seconds, peak_memory()});
+        if (seconds > long_phase_seconds) {
+            log::info(fmt::format("{} {:.1f} s", name, seconds));
+        }
+    };
+    Timer timer;
+    const auto locations = locate_probes<d>(deck, geometry);
+    const iga::SpacePtr<d> space = make_space<d>(deck, geometry);
+    const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
+    check_memory<d>(space->geometry(), n_components);
+    add_phase("discretization", timer.seconds());
+    log::info(fmt::format("solving for {} unknowns", n_components * space->n_dofs()));
+
+    iga::LinearStaticOptions options;
+    options.solver = deck.solver;
+    options.n_gauss_points = deck.discretization.n_gauss_points;
+    const iga::LinearStaticResult<d> result =
+        iga::solve_linear_static<d>(space, deck.problem, options);
+    for (const Phase& phase : result.phases) {
+        add_phase(phase.name, phase.seconds);
+        phases.back().peak_memory = phase.peak_memory;
+    }
+
+    timer = {};
+    Summary summary;
+    summary.volume = iga::volume(geometry);
+    // Locations stay valid: refinement keeps every patch's parameters.
+    summary.probes = evaluate_probes<d>(deck, locations, result, summary.volume);
+    add_phase("probes", timer.seconds());
+    timer = {};
+    for (const auto& file : write_result_files<d>(deck, space, result, folder)) {
+        summary.files.push_back(file.string());
+    }
+    add_phase("output", timer.seconds());
+
+    summary.deck = deck.path.string();
+    summary.deck_hash = fnv_hash(deck.text);
+    summary.title = deck.title;
+    summary.units = deck.units.name();
+    summary.signature = iga::signature(geometry);
+    summary.dimension = d;
+    summary.n_patches = geometry.n_patches();
+    summary.n_interfaces = static_cast<int>(geometry.interfaces.size());
+    summary.n_control_points = geometry.n_control_points();
+    summary.n_elements = result.n_elements;
+    summary.n_unknowns = result.n_unknowns;
+    summary.n_threads = n_threads();
+    summary.solver = result.solver;
+    for (const auto& load_case : result.cases) {
+        summary.cases.push_back(to_summary(load_case));
+    }
+    summary.phases = std::move(phases);
+    summary.warnings = log::warnings();
+    return summary;
+}
+
+template double estimated_matrix_memory<2>(const iga::MultiPatch<2>&, int);
+template double estimated_matrix_memory<3>(const iga::MultiPatch<3>&, int);
+template Summary run_linear<2>(const io::Deck&, const iga::MultiPatch<2>&,
+                               const std::filesystem::path&, std::vector<Phase>);
+template Summary run_linear<3>(const io::Deck&, const iga::MultiPatch<3>&,
+                               const std::filesystem::path&, std::vector<Phase>);
+
+}  // namespace couture::drivers

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "drivers/summary.h"
+#include "iga/post/locator.h"
+#include "iga/solve/linear_static.h"
+#include "io/deck.h"
+
+namespace couture::drivers {
+
+/// Where each probe of the deck lies; nothing for those without a place.
+///
+/// @throws InputError  for a point that is farther than 1e-6 of the part's size from it: names the
+///                     distance and the nearest point
+template <int d>
+[[nodiscard]] std::vector<std::optional<iga::Location<d>>> locate_probes(
+    const io::Deck& deck, const iga::MultiPatch<d>& geometry);
+
+/// The values of all probes. At a place that several patches share it is that of the first.
+template <int d>
+[[nodiscard]] std::vector<ProbeResult> evaluate_probes(
+    const io::Deck& deck, const std::vector<std::optional<iga::Location<d>>>& locations,
+    const iga::LinearStaticResult<d>& result, double volume);
+
+/// Value of a field quantity ("stress_xx", "displacement_magnitude", ...) at a place.
+template <int d>
+[[nodiscard]] double quantity_at(const iga::Problem& problem, const iga::CaseResult<d>& result,
+                                 const std::string& quantity, const iga::Location<d>& location);
+
+}  // namespace couture::drivers

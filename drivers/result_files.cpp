@@ -1,0 +1,112 @@
+#include "drivers/result_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "drivers/hash.h"
+#include "drivers/result_picture.h"
+#include "iga/post/stress.h"
+#include "io/atomic_file.h"
+#include "io/vtk_writer.h"
+
+namespace couture::drivers {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> voigt_names = {"xx", "yy", "zz", "yz", "xz", "xy"};
+
+/// Coefficients of von Mises and principal stresses at the control points of a stress field: exact
+/// where the stress is constant, of the field's own accuracy elsewhere.
+MatrixX map_rows(const MatrixX& stresses, int n_columns,
+                 const std::function<VectorX(const Vector<6>&)>& f) {
+    MatrixX result(stresses.rows(), n_columns);
+    for (Eigen::Index i = 0; i < stresses.rows(); ++i) {
+        result.row(i) = f(stresses.row(i).transpose()).transpose();
+    }
+    return result;
+}
+
+MatrixX von_mises_rows(const MatrixX& stresses) {
+    return map_rows(stresses, 1,
+                    [](const Vector<6>& s) { return VectorX::Constant(1, iga::von_mises(s)); });
+}
+
+template <int d>
+std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
+                                         const iga::CaseResult<d>& result, const MatrixX& stress) {
+    if (problem.physics == iga::Physics::poisson) {
+        return {{"potential", result.displacement.coefficients, {}},
+                {"flux", stress.leftCols(3), {}}};
+    }
+    return {{"displacement", result.displacement.coefficients, {}},
+            {"stress", stress, voigt_names},
+            {"von_mises", von_mises_rows(stress), {}},
+            {"principal",
+             map_rows(stress, 3,
+                      [](const Vector<6>& s) { return VectorX(iga::principal_stresses(s)); }),
+             {"1", "2", "3"}}};
+}
+
+}  // namespace
+
+template <int d>
+std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
+    nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                     {"deck", deck.path.filename().string()},
+                                     {"deck_hash", fnv_hash(deck.text)},
+                                     {"deck_text", deck.text},
+                                     {"signature", iga::signature(geometry)}};
+    if (!deck.geometry.file.empty()) {
+        object["geometry_file"] = deck.geometry.file.filename().string();
+        object["geometry_hash"] = fnv_hash(io::read_text(deck.geometry.file));
+    }
+    return object.dump();
+}
+
+template <int d>
+std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpacePtr<d>& space,
+                                         const iga::LinearStaticResult<d>& result,
+                                         const fs::path& folder) {
+    std::vector<fs::path> files;
+    const std::string origin = provenance<d>(deck, space->geometry());
+    for (const iga::CaseResult<d>& load_case : result.cases) {
+        const std::string stem =
+            deck.path.stem().string() + (load_case.name.empty() ? "" : "_" + load_case.name);
+        MatrixX stress;
+        if (deck.output.vtu || deck.output.png) {
+            stress = iga::project_stress<d>(deck.problem, load_case.displacement, load_case.name);
+        }
+        if (deck.output.vtu) {
+            files.push_back(folder / (stem + ".vtu"));
+            const auto arrays = field_arrays<d>(deck.problem, load_case, stress);
+            io::write_vtu<d>(files.back(), *space, arrays, {},
+                             {.linear = deck.output.linear, .provenance = origin});
+        }
+        if (deck.output.gauss_points) {
+            files.push_back(folder / (stem + "_gauss.vtu"));
+            const auto points =
+                iga::gauss_point_stresses<d>(deck.problem, load_case.displacement, load_case.name);
+            const std::vector<io::PointArray> arrays = {
+                {"stress", points.stresses, voigt_names},
+                {"von_mises", von_mises_rows(points.stresses), {}}};
+            io::write_points_vtu(files.back(), points.points, arrays, origin);
+        }
+        if (deck.output.png) {
+            files.push_back(folder / (stem + ".png"));
+            write_picture<d>(files.back(), deck, space, load_case, stress);
+        }
+    }
+    return files;
+}
+
+template std::string provenance<2>(const io::Deck&, const iga::MultiPatch<2>&);
+template std::string provenance<3>(const io::Deck&, const iga::MultiPatch<3>&);
+template std::vector<fs::path> write_result_files<2>(const io::Deck&, const iga::SpacePtr<2>&,
+                                                     const iga::LinearStaticResult<2>&,
+                                                     const fs::path&);
+template std::vector<fs::path> write_result_files<3>(const io::Deck&, const iga::SpacePtr<3>&,
+                                                     const iga::LinearStaticResult<3>&,
+                                                     const fs::path&);
+
+}  // namespace couture::drivers

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "iga/solve/linear_static.h"
+#include "io/deck.h"
+
+namespace couture::drivers {
+
+/// Writes what [output] asks for, per load case: "<name>.vtu" ("<name>_<case>.vtu" for named
+/// cases), "<name>_gauss.vtu", "<name>.png".
+///
+/// @return paths of the files
+template <int d>
+[[nodiscard]] std::vector<std::filesystem::path> write_result_files(
+    const io::Deck& deck, const iga::SpacePtr<d>& space, const iga::LinearStaticResult<d>& result,
+    const std::filesystem::path& folder);
+
+/// Deck text and hash, program version and signature, as JSON: what every result file carries.
+template <int d>
+[[nodiscard]] std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry);
+
+}  // namespace couture::drivers

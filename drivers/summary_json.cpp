@@ -1,0 +1,96 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "drivers/summary.h"
+
+namespace couture::drivers {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json_list(const Vector3& v) { return Json::array({v[0], v[1], v[2]}); }
+
+Json to_json_object(const CaseSummary& load_case) {
+    Json reactions = Json::object();
+    for (const auto& [set, force] : load_case.reactions) {
+        reactions[set] = to_json_list(force);
+    }
+    return {{"name", case_title(load_case.name)},
+            {"energy", load_case.energy},
+            {"applied_force", to_json_list(load_case.applied_force)},
+            {"foundation_force", to_json_list(load_case.foundation_force)},
+            {"reactions", reactions},
+            {"balance", load_case.balance}};
+}
+
+Json to_json_object(const ProbeResult& probe) {
+    Json object = {{"name", probe.name},
+                   {"quantity", probe.quantity},
+                   {"case", case_title(probe.load_case)},
+                   {"value", probe.value}};
+    if (probe.expected) {
+        object["expected"] = *probe.expected;
+        object["allowed_error"] = probe.allowed_error;
+    }
+    object["passed"] = probe.passed;
+    return object;
+}
+
+}  // namespace
+
+std::string to_json(const Summary& summary) {
+    Json phases = Json::array();
+    for (const Phase& phase : summary.phases) {
+        phases.push_back(
+            {{"name", phase.name}, {"seconds", phase.seconds}, {"peak_memory", phase.peak_memory}});
+    }
+    Json cases = Json::array();
+    for (const CaseSummary& load_case : summary.cases) {
+        cases.push_back(to_json_object(load_case));
+    }
+    Json probes = Json::array();
+    for (const ProbeResult& probe : summary.probes) {
+        probes.push_back(to_json_object(probe));
+    }
+    Json object = {{"program", "couture " COUTURE_VERSION},
+                   {"status", summary.passed() ? "done" : "expectation_not_met"},
+                   {"deck", summary.deck},
+                   {"deck_hash", summary.deck_hash},
+                   {"title", summary.title},
+                   {"units", summary.units},
+                   {"signature", summary.signature},
+                   {"dimension", summary.dimension},
+                   {"patches", summary.n_patches},
+                   {"interfaces", summary.n_interfaces},
+                   {"control_points", summary.n_control_points},
+                   {"volume", summary.volume},
+                   {"elements", summary.n_elements},
+                   {"unknowns", summary.n_unknowns},
+                   {"threads", summary.n_threads},
+                   {"phases", phases},
+                   {"peak_memory", peak_memory()},
+                   {"solver",
+                    {{"name", summary.solver.solver},
+                     {"iterations", summary.solver.iterations},
+                     {"residual", summary.solver.residual},
+                     {"memory", summary.solver.memory},
+                     {"note", summary.solver.note}}},
+                   {"energy", cases.empty() ? Json(0.0) : cases[0]["energy"]},
+                   {"reactions", cases.empty() ? Json::object() : cases[0]["reactions"]},
+                   {"cases", cases},
+                   {"probes", probes},
+                   {"warnings", summary.warnings},
+                   {"files", summary.files}};
+    return object.dump(2) + "\n";
+}
+
+std::string error_json(const std::string& message, int exit_code) {
+    const Json object = {{"program", "couture " COUTURE_VERSION},
+                         {"status", exit_code == 2 ? "bad_input" : "failed"},
+                         {"error", message}};
+    // Messages may quote bytes of a broken file that are not text.
+    return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,88 @@
+// Keys and types of a run's JSON are those of drivers/schema.md, both ways.
+#include <catch2/catch.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "io/atomic_file.h"
+#include "tests/drivers/run_program.h"
+
+using namespace couture;
+using Json = nlohmann::json;
+
+namespace {
+
+/// Rows "| `key` | type | meaning |" of the first table: key -> type. A type that ends with
+/// "optional" may be absent.
+std::map<std::string, std::string> read_schema() {
+    std::istringstream text(io::read_text(COUTURE_SOURCE_DIR "/drivers/schema.md"));
+    std::map<std::string, std::string> schema;
+    for (std::string line; std::getline(text, line);) {
+        if (!line.starts_with("| `")) {
+            continue;
+        }
+        const std::size_t key_end = line.find('`', 3);
+        const std::size_t type = line.find("| ", key_end) + 2;
+        schema[line.substr(3, key_end - 3)] = line.substr(type, line.find(" |", type) - type);
+    }
+    return schema;
+}
+
+std::string type_of(const Json& value) {
+    if (value.is_number_integer()) {
+        return "integer";
+    }
+    if (value.is_array() && value.size() == 3 && value[0].is_number()) {
+        return "vector";
+    }
+    return value.type_name();
+}
+
+bool fits(const Json& value, const std::string& type) {
+    const std::string actual = type_of(value);
+    return actual == type || (type == "number" && actual == "integer") ||
+           (type == "array" && actual == "vector");
+}
+
+/// Walks through all keys; "reactions" has names of sets as keys.
+void collect(const Json& object, const std::string& prefix, std::map<std::string, Json>& found) {
+    for (const auto& [key, value] : object.items()) {
+        const std::string path = prefix + key;
+        found[path] = value;
+        if (value.is_object() && key != "reactions") {
+            collect(value, path + ".", found);
+        } else if (value.is_array()) {
+            for (const Json& item : value) {
+                if (item.is_object()) {
+                    collect(item, path + "[].", found);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("schema: a run's JSON has the keys and types that are documented", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto result = tests::run_couture(
+        "solve --json '" COUTURE_SOURCE_DIR "/drivers/decks/solve_bar.toml'", folder.path());
+    CAPTURE(result.errors);
+    REQUIRE(result.exit_code == 0);
+    std::map<std::string, Json> found;
+    collect(Json::parse(result.output), "", found);
+    const std::map<std::string, std::string> schema = read_schema();
+    REQUIRE(schema.size() > 20);
+    for (const auto& [key, value] : found) {
+        CAPTURE(key, value.dump());
+        REQUIRE(schema.count(key) == 1);
+        std::string type = schema.at(key);
+        type = type.substr(0, type.find(','));
+        CHECK(fits(value, type));
+    }
+    for (const auto& [key, type] : schema) {
+        CAPTURE(key);
+        CHECK((found.count(key) == 1 || type.ends_with("optional")));
+    }
+}

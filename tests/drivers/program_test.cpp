@@ -1,0 +1,88 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+#include "tests/drivers/run_program.h"
+
+using namespace couture;
+using tests::run_couture;
+using tests::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string bar = "'" COUTURE_SOURCE_DIR "/drivers/decks/solve_bar.toml'";
+
+}  // namespace
+
+TEST_CASE("couture: help and version", "[drivers]") {
+    const TemporaryFolder folder;
+    CHECK(run_couture("--version", folder.path()).output.starts_with("couture "));
+    CHECK(run_couture("--help", folder.path()).exit_code == 0);
+    CHECK(run_couture("solve --help", folder.path()).exit_code == 0);
+}
+
+TEST_CASE("couture: mistakes on the command line end with 2", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto unknown = run_couture("slove x.toml", folder.path());
+    CHECK(unknown.exit_code == 2);
+    CHECK(unknown.errors.find("there is no command 'slove'") != std::string::npos);
+    CHECK(unknown.errors.find("did you mean 'solve'?") != std::string::npos);
+    CHECK(run_couture("", folder.path()).exit_code == 2);
+    CHECK(run_couture("solve", folder.path()).exit_code == 2);
+    CHECK(run_couture("solve x.toml --threads none", folder.path()).exit_code == 2);
+    const auto missing = run_couture("solve x.toml", folder.path());
+    CHECK(missing.exit_code == 2);
+    CHECK(missing.errors == "couture: x.toml: can't be read: No such file or directory\n");
+    const auto directory = run_couture("check .", folder.path());
+    CHECK(directory.exit_code == 2);
+    CHECK(directory.errors == "couture: .: is a folder, not a file\n");
+}
+
+TEST_CASE("couture check: a good deck is valid and nothing is written", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result = run_couture("check " + bar, folder.path());
+    CHECK(result.exit_code == 0);
+    CHECK(result.output == "solve_bar.toml: valid; patches 1, unknowns 162\n");
+    CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("couture solve: an expectation that is not met ends with 1", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result =
+        run_couture("solve --json --set output.probe.0.expect=1 " + bar, folder.path());
+    CHECK(result.exit_code == 1);
+    CHECK(Json::parse(result.output)["status"] == "expectation_not_met");
+}
+
+TEST_CASE("couture solve: a body that can move ends with 1 and one object", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result = run_couture(
+        "solve --json --set 'symmetry.0.on=[\"x_low\", \"y_low\"]' " + bar, folder.path());
+    CHECK(result.exit_code == 1);
+    CHECK(Json::parse(result.output)["status"] == "failed");
+}
+
+TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("solve --out a --threads 1 " + bar, folder.path()).exit_code == 0);
+    REQUIRE(run_couture("solve --out b --threads 2 " + bar, folder.path()).exit_code == 0);
+    REQUIRE(run_couture("solve --out c --set discretization.degree=3 " + bar, folder.path())
+                .exit_code == 0);
+    const std::string compare = "compare a/solve_bar.json ";
+    CHECK(run_couture(compare + "b/solve_bar.json", folder.path()).output ==
+          "equal within 1e-09\n");
+    const auto different = run_couture(compare + "c/solve_bar.json", folder.path());
+    CHECK(different.exit_code == 1);
+    CHECK(different.output.find("unknowns: 162") != std::string::npos);
+}
+
+TEST_CASE("couture convert: a deck's part becomes a file that info reads", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert " + bar + " bar.xml", folder.path()).exit_code == 0);
+    const auto info = run_couture("info --json bar.xml", folder.path());
+    REQUIRE(info.exit_code == 0);
+    CHECK(Json::parse(info.output).is_object());
+    CHECK(run_couture("compare bar.xml bar.xml", folder.path()).exit_code == 0);
+}
