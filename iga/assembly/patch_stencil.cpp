@@ -514,6 +514,32 @@ void PatchIntegrator<d>::integrate(int first, int last,
     }
 }
 
+template <int d>
+double PatchIntegrator<d>::flops() const {
+    // Functions times elements of their support: what each stage's row loop runs over.
+    std::array<double, d> supports;
+    for (int k = 0; k < d; ++k) {
+        supports[k] = 0.0;
+        for (int i = 0; i < sizes_[k]; ++i) {
+            supports[k] += directions_[k].last_element[i] - directions_[k].first_element[i] + 1;
+        }
+    }
+    const auto points = [this](int k) { return directions_[k].n_points; };
+    const auto local = [this](int k) { return directions_[k].degree + 1; };
+    const double lanes = d == 3 ? local(d - 1) : 1;
+    double sum = 0.0;
+    if (d == 3) {
+        sum += supports[d - 1] * points(d - 1) * grid_.points_per_plane() *
+               (has_value_ ? 16.0 : 9.0) * lanes;
+    }
+    const double planes = d == 3 ? sizes_[d - 1] : 1;
+    sum += planes * supports[1] * points(1) * grid_.line(0).n_points() * (9.0 + 6.0 * local(1)) *
+           lanes;
+    sum += planes * sizes_[1] * supports[0] * points(0) * (2.0 * directions_[1].degree + 1.0) *
+           (4.0 + 2.0 * local(0)) * lanes;
+    return 2.0 * sum * form_.n_components * form_.n_components;
+}
+
 template class PatchIntegrator<2>;
 template class PatchIntegrator<3>;
 

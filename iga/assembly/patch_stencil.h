@@ -41,6 +41,10 @@ class PatchIntegrator {
     /// Number of planes of functions in the last direction, the unit of work.
     [[nodiscard]] int n_row_planes() const { return sizes_[d - 1]; }
 
+    /// Floating-point operations of the three contractions (a multiply-add counts two), without
+    /// geometry and coefficients: a lower bound of the work done.
+    [[nodiscard]] double flops() const;
+
     /// Rows with i_{d-1} in [first, last), ascending; `sink` gets each once, from this thread.
     ///
     /// @throws GeometryError  where det J changes its sign: patch, place, value

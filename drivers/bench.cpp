@@ -1,0 +1,198 @@
+#include "drivers/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "iga/assembly/assembler.h"
+#include "iga/assembly/elasticity.h"
+#include "iga/assembly/patch_stencil.h"
+#include "iga/assembly/sparsity.h"
+#include "iga/core/log.h"
+#include "iga/core/parallel.h"
+#include "iga/core/timer.h"
+#include "iga/solve/linear_static.h"
+#include "iga/spline/shapes.h"
+
+namespace couture::drivers {
+
+using namespace iga;
+
+namespace {
+
+MultiPatch<3> annulus(int degree, int n_elements) {
+    MultiPatch<3> part;
+    part.patches = {make_extrusion(make_quarter_annulus(1.0, 2.0), Vector3(0.0, 0.0, 1.0))};
+    part.boundary_sets["end"] = {make_side<3>(0, 4)};
+    return refine<3>(part, degree, std::array<int, 3>{n_elements, n_elements, n_elements});
+}
+
+Problem elastic_problem() {
+    Problem problem;
+    Material material;
+    material.name = "unit";
+    material.stiffness = isotropic_stiffness(1.0, 0.3);
+    problem.materials = {material};
+    Support held;
+    held.on = "end";
+    held.components = {constant(0.0), constant(0.0), constant(0.0)};
+    problem.supports = {held};
+    BodyForce weight;
+    weight.components = {constant(0.0), constant(0.0), constant(-1.0)};
+    problem.body_forces = {weight};
+    return problem;
+}
+
+AssemblyRow measure_assembly(const std::string& name, int degree, int n_elements, int threads,
+                             int n_runs) {
+    const Space<3> space(annulus(degree, n_elements));
+    const bool is_scalar = name == "scalar";
+    const BilinearForm<3> form =
+        is_scalar ? scalar_form<3>(1.0, 0.0) : stiffness_form<3>(elastic_problem(), 1);
+    AssemblyRow row{name, degree, n_elements, threads, space.n_dofs() * form.n_components};
+    const TensorSpace<3>& tensor = space.tensor(0);
+    row.flops = PatchIntegrator<3>(0, space.geometry().patches[0], tensor, space.weights(0), form,
+                                   gauss_points<3>(tensor, {}))
+                    .flops();
+    row.seconds = 1e300;
+    const int before = n_threads();
+    set_n_threads(threads);
+    for (int run = 0; run < n_runs; ++run) {
+        const Timer timer;
+        const BlockMatrix matrix = assemble(space, form);
+        row.seconds = std::min(row.seconds, timer.seconds());
+        row.bytes = static_cast<double>(matrix.memory());
+    }
+    set_n_threads(before);
+    return row;
+}
+
+SolveRow measure_solve(const std::string& solver, int degree, int n_elements) {
+    const auto space = std::make_shared<const Space<3>>(annulus(degree, n_elements));
+    LinearStaticOptions options;
+    options.solver.name = solver;
+    options.solver.tolerance = 1e-8;
+    const LinearStaticResult<3> result = solve_linear_static<3>(space, elastic_problem(), options);
+    SolveRow row{solver, degree, n_elements, result.n_unknowns};
+    for (const Phase& phase : result.phases) {
+        if (phase.name == "factorization") {
+            row.setup_seconds = phase.seconds;
+        } else if (phase.name == "solution") {
+            row.solve_seconds = phase.seconds;
+        }
+    }
+    row.iterations = result.solver.iterations;
+    row.residual = result.solver.residual;
+    row.memory = static_cast<double>(result.solver.memory);
+    return row;
+}
+
+}  // namespace
+
+BenchResult run_benchmarks(const BenchOptions& options) {
+    struct Case {
+        const char* problem;
+        int degree;
+        int n_elements;
+    };
+    const std::vector<Case> quick = {{"scalar", 2, 16}, {"scalar", 3, 8}, {"elasticity", 2, 8}};
+    const std::vector<Case> all = {
+        {"scalar", 1, 48},     {"scalar", 2, 8},     {"scalar", 2, 16},     {"scalar", 2, 32},
+        {"scalar", 2, 48},     {"scalar", 3, 16},    {"scalar", 3, 32},     {"scalar", 4, 24},
+        {"elasticity", 1, 24}, {"elasticity", 2, 8}, {"elasticity", 2, 16}, {"elasticity", 2, 24},
+        {"elasticity", 3, 16}, {"elasticity", 4, 12}};
+    BenchResult result;
+    for (int threads = 1; threads <= options.max_threads; ++threads) {
+        log::info(fmt::format("machine limits, {} thread{}", threads, threads > 1 ? "s" : ""));
+        result.limits.push_back(measure_machine(threads));
+        for (const Case& c : options.quick ? quick : all) {
+            log::info(fmt::format("assembly {} p{} n{}", c.problem, c.degree, c.n_elements));
+            result.assembly.push_back(
+                measure_assembly(c.problem, c.degree, c.n_elements, threads, options.n_runs));
+        }
+    }
+    const std::vector<std::pair<int, int>> solves =
+        options.quick ? std::vector<std::pair<int, int>>{{2, 6}}
+                      : std::vector<std::pair<int, int>>{{1, 16}, {2, 8}, {2, 16}, {3, 8}, {3, 16}};
+    for (const auto& [degree, n_elements] : solves) {
+        for (const std::string& solver : linear_solver_names()) {
+            if (solver != "auto") {
+                log::info(fmt::format("solution {} p{} n{}", solver, degree, n_elements));
+                result.solves.push_back(measure_solve(solver, degree, n_elements));
+            }
+        }
+    }
+    return result;
+}
+
+std::string bench_text(const BenchResult& result) {
+    std::string text = "Machine\n  threads  triad GB/s  FMA GF/s  dgemm GF/s\n";
+    for (const MachineLimits& limits : result.limits) {
+        text += fmt::format("  {:7}  {:10.1f}  {:8.1f}  {:10.1f}\n", limits.n_threads,
+                            limits.triad * 1e-9, limits.fma * 1e-9, limits.dgemm * 1e-9);
+    }
+    text +=
+        "\nAssembly: quarter-annulus NURBS patch, p + 1 Gauss points, best of several\n"
+        "  problem     p   n  threads  unknowns   seconds  us/unknown   GF/s  of FMA  "
+        "matrix MB   GB/s  of triad\n";
+    for (const AssemblyRow& row : result.assembly) {
+        const MachineLimits& limits = result.limits[row.n_threads - 1];
+        text += fmt::format(
+            "  {:10}  {}  {:2}  {:7}  {:8}  {:8.4f}  {:10.2f}  {:5.1f}  {:5.1f}%  {:9.1f}  "
+            "{:5.2f}  {:7.1f}%\n",
+            row.problem, row.degree, row.n_elements, row.n_threads, row.n_unknowns, row.seconds,
+            1e6 * row.seconds / row.n_unknowns, 1e-9 * row.flops / row.seconds,
+            100.0 * row.flops / row.seconds / limits.fma, 1e-6 * row.bytes,
+            1e-9 * row.bytes / row.seconds, 100.0 * row.bytes / row.seconds / limits.triad);
+    }
+    text +=
+        "\nSolution: elasticity, one side held, to 1e-8\n"
+        "  solver    p   n  unknowns   set-up s   solve s  iterations  residual  memory MB\n";
+    for (const SolveRow& row : result.solves) {
+        text += fmt::format("  {:8}  {}  {:2}  {:8}  {:9.3f}  {:8.3f}  {:10}  {:8.1e}  {:>9}\n",
+                            row.solver, row.degree, row.n_elements, row.n_unknowns,
+                            row.setup_seconds, row.solve_seconds, row.iterations, row.residual,
+                            row.memory > 0.0 ? fmt::format("{:.0f}", 1e-6 * row.memory) : "-");
+    }
+    text += fmt::format("\nPeak memory of the process: {:.0f} MB\n", 1e-6 * peak_memory());
+    return text;
+}
+
+std::string bench_json(const BenchResult& result) {
+    nlohmann::ordered_json json;
+    json["machine"] = nlohmann::ordered_json::array();
+    for (const MachineLimits& limits : result.limits) {
+        json["machine"].push_back({{"threads", limits.n_threads},
+                                   {"triad_bytes_per_second", limits.triad},
+                                   {"fma_flops", limits.fma},
+                                   {"dgemm_flops", limits.dgemm}});
+    }
+    json["assembly"] = nlohmann::ordered_json::array();
+    for (const AssemblyRow& row : result.assembly) {
+        json["assembly"].push_back({{"problem", row.problem},
+                                    {"degree", row.degree},
+                                    {"elements_per_direction", row.n_elements},
+                                    {"threads", row.n_threads},
+                                    {"unknowns", row.n_unknowns},
+                                    {"seconds", row.seconds},
+                                    {"flop", row.flops},
+                                    {"bytes", row.bytes}});
+    }
+    json["solution"] = nlohmann::ordered_json::array();
+    for (const SolveRow& row : result.solves) {
+        json["solution"].push_back({{"solver", row.solver},
+                                    {"degree", row.degree},
+                                    {"elements_per_direction", row.n_elements},
+                                    {"unknowns", row.n_unknowns},
+                                    {"setup_seconds", row.setup_seconds},
+                                    {"solve_seconds", row.solve_seconds},
+                                    {"iterations", row.iterations},
+                                    {"residual", row.residual},
+                                    {"memory_bytes", row.memory}});
+    }
+    json["peak_memory_bytes"] = peak_memory();
+    return json.dump(2);
+}
+
+}  // namespace couture::drivers

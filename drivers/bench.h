@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "iga/linalg/machine_limits.h"
+
+namespace couture::drivers {
+
+/// One assembly: quarter-annulus NURBS patch extruded, n elements per direction, p + 1 Gauss
+/// points, the matrix in its final sparse form (pattern included), best of `n_runs`.
+struct AssemblyRow {
+    std::string problem;
+    int degree = 0;
+    int n_elements = 0;
+    int n_threads = 1;
+    int n_unknowns = 0;
+    double seconds = 0.0;
+    /// Of the contractions.
+    double flops = 0.0;
+    /// Bytes of the matrix.
+    double bytes = 0.0;
+};
+
+/// One solution of the assembled elasticity problem, one side held, unit body force.
+struct SolveRow {
+    std::string solver;
+    int degree = 0;
+    int n_elements = 0;
+    int n_unknowns = 0;
+    double setup_seconds = 0.0;
+    double solve_seconds = 0.0;
+    int iterations = 0;
+    double residual = 0.0;
+    /// Bytes of the factor or preconditioner, 0 if unknown.
+    double memory = 0.0;
+};
+
+struct BenchOptions {
+    /// Fewer and smaller cases, a few seconds.
+    bool quick = false;
+    int n_runs = 5;
+    int max_threads = 2;
+};
+
+struct BenchResult {
+    std::vector<iga::MachineLimits> limits;
+    std::vector<AssemblyRow> assembly;
+    std::vector<SolveRow> solves;
+};
+
+[[nodiscard]] BenchResult run_benchmarks(const BenchOptions& options);
+[[nodiscard]] std::string bench_text(const BenchResult& result);
+[[nodiscard]] std::string bench_json(const BenchResult& result);
+
+}  // namespace couture::drivers
