@@ -97,6 +97,12 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("in", *from, "a spline file, or a deck (its geometry)")->required();
     sub->add_option("out", *to, "the extension decides: .xml, .mesh, .txt, .inp, .h5")->required();
 
+    const auto bench = std::make_shared<BenchCommandOptions>();
+    sub = add_command(app, command, "bench", "time assembly and solvers on this machine",
+                      [&command, bench] { return run_bench(*bench, command.common); });
+    sub->add_flag("--quick", bench->quick, "small cases only, a few seconds");
+    sub->add_option("--save", bench->save, "also write the numbers to this JSON file");
+
     sub = add_command(app, command, "compare", "say what differs between two results",
                       [&command, compare] { return run_compare(*compare, command.common); });
     sub->add_option("first", compare->first, "a result (.json) or a spline file")->required();

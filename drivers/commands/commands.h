@@ -35,12 +35,19 @@ struct CompareOptions {
     double tolerance = 1e-9;
 };
 
+struct BenchCommandOptions {
+    bool quick = false;
+    /// Where the numbers are also written as JSON; may be empty.
+    std::filesystem::path save;
+};
+
 /// Each returns the exit code and throws what is wrong.
 int run_solve(const SolveOptions& options, const CommonOptions& common);
 int run_check(const SolveOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& file, const CommonOptions& common);
 int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
                 const CommonOptions& common);
+int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);
 
 }  // namespace couture::drivers
