@@ -92,6 +92,14 @@ void name_outer(MultiPatch<d>& geometry) {
 template <int d>
 SpacePtr<d> make_space(const MultiPatch<d>& geometry, int degree,
                        const std::array<int, d>& n_elements) {
+    const bool is_contained =
+        std::all_of(geometry.patches.begin(), geometry.patches.end(), [&](const Patch<d>& patch) {
+            const std::array<int, d> degrees = patch.space().degrees();
+            return *std::max_element(degrees.begin(), degrees.end()) <= degree;
+        });
+    if (is_contained) {
+        return std::make_shared<const Space<d>>(refine<d>(geometry, degree, n_elements));
+    }
     std::vector<TensorSpace<d>> spaces;
     for (const Patch<d>& patch : geometry.patches) {
         TensorSpace<d> space = patch.space();

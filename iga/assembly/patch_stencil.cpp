@@ -108,7 +108,9 @@ void PatchIntegrator<d>::transform_coefficients(int slot, Workspace& workspace) 
             return Vector4d{start[0], start[std::min(1, last) * width],
                             start[std::min(2, last) * width], start[std::min(3, last) * width]};
         };
-        const Vector4d W = gather(plane.denominator, 1, 0);
+        // Functions without weights on a rational map have no denominator.
+        const Vector4d W =
+            is_rational_ ? gather(plane.denominator, 1, 0) : Vector4d{1.0, 1.0, 1.0, 1.0};
         const Vector4d det = gather(plane.determinant, 1, 0);
         const Vector4d factor = gather(plane.quadrature_weight, 1, 0) * det * orientation_;
         for (int s = 0; s < d; ++s) {
@@ -116,7 +118,7 @@ void PatchIntegrator<d>::transform_coefficients(int slot, Workspace& workspace) 
             for (int k = 0; k < d; ++k) {
                 const Vector4d inverse = gather(plane.inverse_jacobian, d * d, d * k + s);
                 T[s][k] = inverse / W;
-                if constexpr (n_parametric > d) {
+                if (n_parametric > d && is_rational_) {
                     value_slot -= inverse * gather(plane.denominator_gradient, d, k);
                 }
             }

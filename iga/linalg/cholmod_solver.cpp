@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "iga/core/parallel.h"
@@ -23,6 +24,9 @@ constexpr double suspicious_pivot = 1e-9;
 /// Residuals above it are refined, as long as that helps.
 constexpr double refinement_goal = 1e-13;
 constexpr int max_refinements = 4;
+/// Residuals above the tolerance are accepted up to this if they are rounding: thin or nearly
+/// incompressible bodies leave them, since |A| |x| is much larger than |b|.
+constexpr double largest_rounding = 1e-6;
 
 /// CHOLMOD's settings and statistics.
 class Common {
@@ -178,6 +182,15 @@ class CholmodSolver final : public LinearSolver {
             report.residual = better_residual;
             if (has_stalled) {
                 break;
+            }
+        }
+        if (report.residual > options_.tolerance && report.residual <= largest_rounding) {
+            const double rounding = rounding_ratio(*matrix_, is_fixed_, free_b, x);
+            if (report.residual <= rounding) {
+                report.note =
+                    fmt::format("the residual is the rounding of A x: |A| |x| is {:.1e} times |b|",
+                                rounding / std::numeric_limits<double>::epsilon());
+                return report;
             }
         }
         if (!(report.residual <= options_.tolerance)) {

@@ -21,7 +21,8 @@ struct LinearSystem {
 struct SolverOptions {
     /// "auto", "cholmod" or "petsc".
     std::string name = "auto";
-    /// Largest accepted |b - A x| / |b|.
+    /// Largest accepted |b - A x| / |b|. A direct solver may also stop at the rounding of A x where
+    /// that is larger, up to 1e-6, and says so in the report's note.
     double tolerance = 1e-10;
     int max_iterations = 10000;
     /// Options for PETSc, as on its command line ("-ksp_type cg -pc_type gamg").

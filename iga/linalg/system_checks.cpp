@@ -88,6 +88,27 @@ double worst_ratio(const MatrixX& r, const MatrixX& b) {
     return worst;
 }
 
+double rounding_ratio(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
+                      const MatrixX& b, const MatrixX& x) {
+    const int n = matrix.block_size;
+    MatrixX sums = MatrixX::Zero(x.rows(), x.cols());
+    for (int row = 0; row < matrix.n_rows; ++row) {
+        for (std::int64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
+            const int column = matrix.columns[e];
+            for (int i = 0; i < n; ++i) {
+                for (int j = 0; j < n; ++j) {
+                    const double a = std::abs(matrix.values[(e * n + i) * n + j]);
+                    sums.row(n * row + i) += a * x.row(n * column + j).cwiseAbs();
+                    if (matrix.is_symmetric && column != row) {
+                        sums.row(n * column + j) += a * x.row(n * row + i).cwiseAbs();
+                    }
+                }
+            }
+        }
+    }
+    return std::numeric_limits<double>::epsilon() * worst_ratio(free_part(is_fixed, sums), b);
+}
+
 MatrixX orthonormal_basis(const MatrixX& columns) {
     constexpr double dependent = 1e-10;
     MatrixX basis(columns.rows(), columns.cols());

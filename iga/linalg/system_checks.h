@@ -23,6 +23,12 @@ void check_right_hand_side(const BlockMatrix& matrix, const MatrixX& b, const st
 /// Largest |r_k| / |b_k| over the columns k; columns with b_k = 0 and r_k = 0 count as 0.
 [[nodiscard]] double worst_ratio(const MatrixX& r, const MatrixX& b);
 
+/// eps | |A| |x_k| | / |b_k| over the free unknowns, the largest of the columns k: what rounding x
+/// and the products of A x to double precision may leave of |b - A x| / |b|. Residuals no larger
+/// than that can't be made smaller.
+[[nodiscard]] double rounding_ratio(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
+                                    const MatrixX& b, const MatrixX& x);
+
 /// Orthonormal basis of the columns' span: n x rank.
 [[nodiscard]] MatrixX orthonormal_basis(const MatrixX& columns);
 

@@ -38,9 +38,10 @@ struct Meshes {
 
 template <int d>
 void observe_orders(Recorder& recorder, Physics physics, const std::string& part_name,
+                    const std::map<std::string, double>& sizes,
                     const std::vector<Meshes>& all_meshes) {
     recorder.set_source("manufactured: two sine waves");
-    MultiPatch<d> geometry = part<d>(part_name);
+    MultiPatch<d> geometry = part<d>(part_name, sizes);
     name_outer(geometry);
     const WaveSolution solution = trigonometric(d);
     const Problem problem = wave_problem<d>(solution, physics);
@@ -64,16 +65,21 @@ void observe_orders(Recorder& recorder, Physics physics, const std::string& part
 
 template <int d>
 Case convergence_case(const std::string& name, Physics physics, const std::string& part_name,
-                      const std::vector<Meshes>& meshes, bool is_long = false) {
-    return {name, is_long, [=](Recorder& r) { observe_orders<d>(r, physics, part_name, meshes); }};
+                      const std::vector<Meshes>& meshes,
+                      const std::map<std::string, double>& sizes = {}) {
+    return {name, false,
+            [=](Recorder& r) { observe_orders<d>(r, physics, part_name, sizes, meshes); }};
 }
 
 }  // namespace
 
 std::vector<Case> convergence_cases() {
-    const std::vector<Meshes> plane = {{1, 32, 64}, {2, 16, 32}, {3, 16, 32}, {4, 16, 32}};
-    const std::vector<Meshes> solid = {{1, 8, 16}, {2, 8, 12}, {3, 6, 10}, {4, 4, 8}};
-    const std::vector<Meshes> o_grid = {{1, 6, 12}, {2, 6, 10}, {3, 4, 7}, {4, 3, 5}};
+    const std::vector<Meshes> plane = {{1, 32, 64}, {2, 16, 32}, {3, 32, 64}, {4, 32, 64}};
+    const std::vector<Meshes> twisted = {{1, 8, 16}, {2, 8, 12}, {3, 12, 16}, {4, 8, 10}};
+    const std::vector<Meshes> plate = {{1, 8, 16}, {2, 6, 12}, {3, 6, 8}, {4, 8, 10}};
+    // Its distorted patches need finer meshes than high degrees can afford.
+    const std::vector<Meshes> o_grid = {{1, 6, 12}, {2, 10, 14}};
+    const std::map<std::string, double> square = {{"half_width", 2.0}};
     return {
         convergence_case<2>("Poisson 2D, quarter annulus", Physics::poisson, "quarter_annulus",
                             plane),
@@ -83,11 +89,15 @@ std::vector<Case> convergence_cases() {
                             "quarter_annulus", plane),
         convergence_case<2>("elasticity 2D, plate with hole", Physics::elasticity,
                             "plate_with_hole", plane),
-        convergence_case<3>("Poisson 3D, twisted box", Physics::poisson, "twisted_box", solid),
+        convergence_case<3>("Poisson 3D, twisted box", Physics::poisson, "twisted_box", twisted),
+        convergence_case<3>("Poisson 3D, plate with hole", Physics::poisson, "plate_with_hole_3d",
+                            plate, square),
         convergence_case<3>("Poisson 3D, O-grid cylinder", Physics::poisson, "cylinder_o_grid",
                             o_grid),
         convergence_case<3>("elasticity 3D, twisted box", Physics::elasticity, "twisted_box",
-                            solid),
+                            twisted),
+        convergence_case<3>("elasticity 3D, plate with hole", Physics::elasticity,
+                            "plate_with_hole_3d", plate, square),
         convergence_case<3>("elasticity 3D, O-grid cylinder", Physics::elasticity,
                             "cylinder_o_grid", o_grid),
     };

@@ -130,6 +130,22 @@ TEST_CASE("assemble: scalar matrices equal the plain sum over points", "[assembl
     check_against_naive(space, scalar_form<3>(0.4, 2.3));
 }
 
+TEST_CASE("assemble: B-splines below the degree of a rational map have no denominator",
+          "[assembly]") {
+    MultiPatch<2> plane;
+    plane.patches = {make_quarter_annulus(1.0, 2.0)};
+    const Space<2> lower(plane, {{{KnotVector::uniform(1, 3), KnotVector::uniform(1, 4)}}});
+    REQUIRE(lower.weights(0).size() == 0);
+    check_against_naive(lower, scalar_form<2>(1.7, 0.0));
+    check_against_naive(lower, scalar_form<2>(0.4, 2.3));
+    MultiPatch<3> solid;
+    solid.patches = {make_extrusion(make_quarter_annulus(1.0, 2.0), Vector3(0.3, 0.1, 1.5))};
+    const KnotVector linear = KnotVector::uniform(1, 3);
+    const Space<3> lower_solid(solid, {{{linear, linear, linear}}});
+    check_against_naive(lower_solid, scalar_form<3>(1.7, 0.0));
+    check_against_naive(lower_solid, stiffness_form<3>(elastic(Kinematics::solid), 1));
+}
+
 TEST_CASE("assemble: high degrees take the run-time kernels", "[assembly]") {
     MultiPatch<3> part;
     Patch<3> box = make_box<3>(Vector3(1.0, 2.0, 0.5));

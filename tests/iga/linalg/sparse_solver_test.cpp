@@ -298,3 +298,31 @@ TEST_CASE("petsc: options reach it, unread ones are errors", "[linalg]") {
     CHECK_THROWS_WITH(make_linear_solver(options)->factorize({A, {}, {}}),
                       Contains("no_such_thing"));
 }
+
+TEST_CASE("cholmod: a residual that is rounding of A x is accepted and named", "[linalg]") {
+    // A long chain of springs pulled at its end: |A| |x| = 4 n |b|, so that eps times it exceeds
+    // the tolerance.
+    constexpr int n = 3000000;
+    BlockMatrix A;
+    A.n_rows = n;
+    A.row_begin.push_back(0);
+    for (int row = 0; row < n; ++row) {
+        A.columns.push_back(row);
+        A.values.push_back(row + 1 < n ? 2.0 / 3.0 : 1.0 / 3.0);
+        if (row + 1 < n) {
+            A.columns.push_back(row + 1);
+            A.values.push_back(-1.0 / 3.0);
+        }
+        A.row_begin.push_back(static_cast<std::int64_t>(A.columns.size()));
+    }
+    MatrixX b = MatrixX::Zero(n, 1);
+    b(n - 1, 0) = 0.1;
+    MatrixX x;
+    const auto solver = make_linear_solver(options_of("cholmod"));
+    solver->factorize({A, {}, {}});
+    const SolveReport report = solver->solve(b, x);
+    CHECK(report.residual > tolerance);
+    CHECK(report.residual < 1e-6);
+    CHECK_THAT(report.note, StartsWith("the residual is the rounding of A x: |A| |x| is "));
+    CHECK(x(n - 1, 0) == Approx(0.3 * n).epsilon(1e-6));
+}
