@@ -184,7 +184,9 @@ class CholmodSolver final : public LinearSolver {
                 break;
             }
         }
-        if (report.residual > options_.tolerance && report.residual <= largest_rounding) {
+        // A tolerance below the precision of one number is refused like any other that is missed.
+        if (report.residual > options_.tolerance && report.residual <= largest_rounding &&
+            options_.tolerance >= std::numeric_limits<double>::epsilon()) {
             const double rounding = rounding_ratio(*matrix_, is_fixed_, free_b, x);
             if (report.residual <= rounding) {
                 report.note =

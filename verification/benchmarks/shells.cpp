@@ -26,7 +26,7 @@ void scordelis_lo(Recorder& recorder) {
     BodyForce weight;
     weight.components = {constant(0.0), constant(0.0), constant(-weight_per_area / thickness)};
     problem.body_forces = {weight};
-    const CaseResult<3> result = solve<3>(make_space<3>(roof, 4, {1, 12, 10}), problem);
+    const CaseResult<3> result = solve<3>(make_space<3>(roof, 4, {1, 24, 20}), problem);
     const auto sinking = [&](double r) {
         const Vector3 edge(r * std::sin(half_angle), 25.0, r * std::cos(half_angle));
         return -displacement_at<3>(result.displacement, edge)[2];
