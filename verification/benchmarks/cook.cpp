@@ -43,15 +43,13 @@ std::vector<double> graded(int n_elements, int n_levels) {
 /// Elements that shrink towards all sides: the clamped corner above and the loaded one above are
 /// singular.
 SpacePtr<2> graded_space(int degree, int n_elements, int n_levels) {
-    const auto knots = [degree](const std::vector<double>& breakpoints) {
-        std::vector<double> all(degree, 0.0);
-        all.insert(all.end(), breakpoints.begin(), breakpoints.end());
-        all.insert(all.end(), degree, 1.0);
-        return KnotVector(degree, all);
-    };
-    return std::make_shared<const Space<2>>(
-        part<2>("cook"), std::vector<TensorSpace<2>>{{{knots(graded(n_elements, n_levels)),
-                                                       knots(graded(n_elements, n_levels))}}});
+    const std::vector<double> breakpoints = graded(n_elements, n_levels);
+    std::vector<double> knots(degree, 0.0);
+    knots.insert(knots.end(), breakpoints.begin(), breakpoints.end());
+    knots.insert(knots.end(), degree, 1.0);
+    const KnotVector direction(degree, knots);
+    return std::make_shared<const Space<2>>(part<2>("cook"),
+                                            std::vector<TensorSpace<2>>{{{direction, direction}}});
 }
 
 void compare(Recorder& recorder, const SpacePtr<2>& space, const Problem& problem, double middle,
