@@ -86,3 +86,15 @@ TEST_CASE("couture convert: a deck's part becomes a file that info reads", "[dri
     CHECK(Json::parse(info.output).is_object());
     CHECK(run_couture("compare bar.xml bar.xml", folder.path()).exit_code == 0);
 }
+
+TEST_CASE("couture: an interrupt ends with 130 and leaves no half-written file", "[drivers]") {
+    const TemporaryFolder folder;
+    const std::string deck = COUTURE_SOURCE_DIR "/drivers/decks/pipe_tee.toml";
+    // Large enough to be still running after a second.
+    const std::string run =
+        "solve --set discretization.elements=16 --set discretization.degree=3 '" + deck +
+        "' & pid=$!; sleep 1; kill -TERM $pid; wait $pid";
+    const auto result = run_couture(run, folder.path());
+    CHECK(result.exit_code == 130);
+    CHECK(std::filesystem::is_empty(folder.path()));
+}

@@ -18,8 +18,8 @@ ProgramResult run_couture(const std::string& arguments, const fs::path& folder) 
     const fs::path output = logs.path() / "output";
     const fs::path errors = logs.path() / "errors";
     const std::string command =
-        fmt::format("cd '{}' && '{}' {} >'{}' 2>'{}' </dev/null", folder.string(), COUTURE_PROGRAM,
-                    arguments, output.string(), errors.string());
+        fmt::format("exec >'{}' 2>'{}' </dev/null; cd '{}'; '{}' {}", output.string(),
+                    errors.string(), folder.string(), COUTURE_PROGRAM, arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), io::read_text(output),
             io::read_text(errors)};
