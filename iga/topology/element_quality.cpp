@@ -12,6 +12,9 @@ namespace couture::iga {
 
 namespace {
 
+/// Of a sum of a few hundred terms, relative to their size.
+constexpr double rounding = 1e-14;
+
 /// Values and derivatives of one direction's functions at a point of one element.
 struct Values1D {
     int first_function = 0;
@@ -38,12 +41,15 @@ template <int d>
 struct Sampler {
     const Patch<d>& patch;
     MatrixX rows;
+    /// Largest coordinate (times weight).
+    double largest = 0.0;
     std::array<std::vector<double>, d> positions;
     /// [direction][element * n_positions + position].
     std::array<std::vector<Values1D>, d> values;
 
     explicit Sampler(const Patch<d>& p) : patch(p) {
         rows = patch.is_rational() ? patch.homogeneous() : patch.control_points();
+        largest = rows.leftCols(d).cwiseAbs().maxCoeff();
         for (int k = 0; k < d; ++k) {
             const KnotVector& knots = patch.knots(k);
             positions[k] = sample_positions(knots.degree());
@@ -117,6 +123,12 @@ struct Sampler {
                     patch.is_rational()
                         ? (sums(k + 1, i) - sums(k + 1, d) * sums(0, i) / sums(0, d)) / sums(0, d)
                         : sums(k + 1, i);
+            }
+            // What rounding leaves of a vanishing derivative has no direction.
+            const double weight = patch.is_rational() ? sums(0, d) : 1.0;
+            const double terms = table[k]->N.row(1).template lpNorm<1>() * largest / weight;
+            if (J.col(k).norm() <= rounding * terms) {
+                J.col(k).setZero();
             }
         }
         return J;
