@@ -23,11 +23,16 @@ Json to_array(const Column& column) {
 }
 
 template <int d>
-Json describe_patch(const iga::Patch<d>& patch) {
+Json describe_patch(const iga::MultiPatch<d>& multipatch, int number) {
+    const iga::Patch<d>& patch = multipatch.patches[number];
     Json result;
     result["degrees"] = to_array(patch.space().degrees());
     result["elements"] = to_array(patch.space().n_elements());
     result["control_points"] = to_array(patch.space().sizes());
+    result["knots"] = Json::array();
+    for (const iga::KnotVector& knots : patch.space().knots) {
+        result["knots"].push_back(knots.knots());
+    }
     result["rational"] = patch.is_rational();
     if (patch.dimension() == d) {
         const iga::PatchCertificate<d> certificate = iga::certify(patch);
@@ -35,6 +40,9 @@ Json describe_patch(const iga::Patch<d>& patch) {
         result["left_handed"] = certificate.orientation < 0;
         result["min_jacobian"] = certificate.min_jacobian;
         result["min_jacobian_at"] = to_array(certificate.min_xi);
+        const iga::QualitySummary<d> quality =
+            iga::element_quality(iga::MultiPatch<d>{{patch}, {}, {}});
+        result["min_scaled_jacobian"] = quality.min_scaled_jacobian;
     }
     return result;
 }
@@ -46,15 +54,25 @@ Json describe(const iga::MultiPatch<d>& multipatch) {
     result["dimension"] = multipatch.dimension();
     result["n_control_points"] = multipatch.n_control_points();
     result["patches"] = Json::array();
-    for (const iga::Patch<d>& patch : multipatch.patches) {
-        result["patches"].push_back(describe_patch(patch));
+    for (int i = 0; i < multipatch.n_patches(); ++i) {
+        result["patches"].push_back(describe_patch(multipatch, i));
     }
     result["n_interfaces"] = multipatch.interfaces.size();
+    result["interfaces"] = Json::array();
+    for (const iga::Interface<d>& interface : multipatch.interfaces) {
+        result["interfaces"].push_back(iga::to_string(interface));
+    }
     result["n_outer_sides"] = multipatch.outer_sides().size();
     result["boundary_sets"] = Json::object();
     for (const auto& [name, set] : multipatch.boundary_sets) {
-        result["boundary_sets"][name] = set.size();
+        result["boundary_sets"][name] = Json::array();
+        for (const iga::PatchEntity<d>& entity : set) {
+            result["boundary_sets"][name].push_back(entity.name());
+        }
     }
+    const MatrixX box = multipatch.bounding_box();
+    result["bounding_box"]["low"] = to_array(box.col(0));
+    result["bounding_box"]["high"] = to_array(box.col(1));
     result["volume"] = iga::volume(multipatch);
     if (multipatch.dimension() == d) {
         const iga::QualitySummary<d> quality = iga::element_quality(multipatch);
@@ -76,18 +94,50 @@ Json to_json(const SplineFile& file) {
     return result;
 }
 
+/// "1 patch", "2 patches".
+std::string count(std::size_t n, const char* one, const char* many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+/// "2 x 2 x 3".
+std::string product(const Json& numbers) {
+    return fmt::format("{}", fmt::join(numbers.get<std::vector<int>>(), " x "));
+}
+
+/// "(0, 0.5, 1)".
+std::string point(const Json& coordinates) {
+    std::string text;
+    for (const Json& coordinate : coordinates) {
+        text += fmt::format("{}{:.6g}", text.empty() ? "(" : ", ", coordinate.get<double>());
+    }
+    return text + ")";
+}
+
 std::string patch_line(std::size_t number, const Json& patch) {
-    std::string line =
-        fmt::format("  patch {}: degrees {}, elements {}, control points {}{}", number,
-                    patch["degrees"].dump(), patch["elements"].dump(),
-                    patch["control_points"].dump(), patch["rational"] ? ", rational" : "");
+    std::string line = fmt::format(
+        "  patch {}: degrees {}, elements {}, control points {}{}", number,
+        fmt::join(patch["degrees"].get<std::vector<int>>(), ", "), product(patch["elements"]),
+        product(patch["control_points"]), patch["rational"] ? ", rational" : "");
     if (patch.contains("validity")) {
-        line +=
-            fmt::format(", {}{}, smallest Jacobian {} at {}", patch["validity"].get<std::string>(),
-                        patch["left_handed"] ? ", left-handed" : "", patch["min_jacobian"].dump(),
-                        patch["min_jacobian_at"].dump());
+        line += fmt::format("; {}{}, smallest Jacobian {:.6g} at {}, scaled {:.6g}",
+                            patch["validity"].get<std::string>(),
+                            patch["left_handed"] ? ", left-handed" : "",
+                            patch["min_jacobian"].get<double>(), point(patch["min_jacobian_at"]),
+                            patch["min_scaled_jacobian"].get<double>());
     }
     return line + "\n";
+}
+
+/// "folded patches: 5, 8\n", or nothing if no patch is so.
+template <typename Condition>
+std::string patch_list(const Json& patches, const char* what, const Condition& is_so) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        if (patches[i].contains("validity") && is_so(patches[i])) {
+            numbers.push_back(i);
+        }
+    }
+    return numbers.empty() ? "" : fmt::format("{} patches: {}\n", what, fmt::join(numbers, ", "));
 }
 
 }  // namespace
@@ -99,23 +149,36 @@ std::string spline_info_json(const SplineFile& file) {
 
 std::string spline_info_text(const SplineFile& file) {
     const Json info = to_json(file);
-    const bool is_surface = info["n_parameters"] == 2;
-    std::string text = fmt::format("{}: {} patch(es), {} interface(s), {} outer side(s)\n",
-                                   file.format, info["patches"].size(), info["n_interfaces"].dump(),
-                                   info["n_outer_sides"].dump());
-    for (std::size_t i = 0; i < info["patches"].size(); ++i) {
-        text += patch_line(i, info["patches"][i]);
+    const Json& patches = info["patches"];
+    std::string text =
+        fmt::format("{}: {}, {}, {}\n", file.format, count(patches.size(), "patch", "patches"),
+                    count(info["interfaces"].size(), "interface", "interfaces"),
+                    count(info["n_outer_sides"].get<std::size_t>(), "outer side", "outer sides"));
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        text += patch_line(i, patches[i]);
     }
-    for (const auto& [name, size] : info["boundary_sets"].items()) {
-        text += fmt::format("boundary set '{}': {} part(s)\n", name, size.dump());
+    for (const Json& interface : info["interfaces"]) {
+        text += fmt::format("  interface: {}\n", interface.get<std::string>());
     }
-    text += fmt::format("control points: {}\n{}: {}\n", info["n_control_points"].dump(),
-                        is_surface ? "area" : "volume", info["volume"].dump());
+    for (const auto& [name, set] : info["boundary_sets"].items()) {
+        text += fmt::format("boundary set '{}': {}\n", name,
+                            fmt::join(set.template get<std::vector<std::string>>(), ", "));
+    }
+    text +=
+        fmt::format("control points: {}\nbounding box: {} to {}\n{}: {:.12g}\n",
+                    info["n_control_points"].get<int>(), point(info["bounding_box"]["low"]),
+                    point(info["bounding_box"]["high"]),
+                    info["n_parameters"] == 2 ? "area" : "volume", info["volume"].get<double>());
     if (info.contains("min_scaled_jacobian")) {
-        text += fmt::format("scaled Jacobian: smallest {} (patch {} at {}), mean {}\n",
-                            info["min_scaled_jacobian"].dump(), info["worst_patch"].dump(),
-                            info["worst_at"].dump(), info["mean_scaled_jacobian"].dump());
+        text +=
+            fmt::format("scaled Jacobian: smallest {:.6g} (patch {} at {}), mean {:.6g}\n",
+                        info["min_scaled_jacobian"].get<double>(), info["worst_patch"].get<int>(),
+                        point(info["worst_at"]), info["mean_scaled_jacobian"].get<double>());
     }
+    text += patch_list(patches, "folded",
+                       [](const Json& patch) { return patch["validity"] == "folded"; });
+    text += patch_list(patches, "left-handed",
+                       [](const Json& patch) { return patch["left_handed"] == true; });
     text += fmt::format("signature: {}\n", info["signature"].get<std::string>());
     for (const std::string& note : file.notes) {
         text += fmt::format("note: {}\n", note);

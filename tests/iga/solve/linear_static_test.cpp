@@ -96,6 +96,30 @@ TEST_CASE("solve_linear_static: a bar in tension", "[solve]") {
     CHECK(principal_stresses(s.stress)[0] == Approx(10.0).epsilon(1e-8));
 }
 
+TEST_CASE("solve_linear_static: a needle bends as slender beams do", "[solve]") {
+    // Length over thickness 100: rounding of the displacements leaves a residual above any
+    // sensible tolerance, and the solution is right to many digits all the same.
+    MultiPatch<3> part;
+    part.patches = {make_box<3>(Vector3(100.0, 1.0, 1.0))};
+    name_sides(part);
+    const SpacePtr<3> space = space_of<3>(part, 3, {8, 1, 1});
+    Problem problem;
+    problem.materials = {isotropic(1e6, 0.0)};
+    problem.supports = {hold("side_0", 0.0, 0.0, 0.0)};
+    Resultant push;
+    push.on = "side_1";
+    push.force = Vector3(0.0, 1e-3, 0.0);
+    problem.resultants = {push};
+    const LinearStaticResult<3> result = solve_linear_static(space, problem);
+    // F L^3 / 3 E I, with I = 1 / 12; shear adds 6e-5 of it.
+    const double expected = 1e-3 * 1e6 / (3.0 * 1e6 / 12.0);
+    CHECK(result.cases[0].displacement.value(0, Vector3(1.0, 0.5, 0.5))[1] ==
+          Approx(expected).epsilon(2e-4));
+    CHECK(result.solver.residual > 1e-10);
+    CHECK_THAT(result.solver.note,
+               Catch::Matchers::Contains("the residual is the rounding of A x"));
+}
+
 TEST_CASE("solve_linear_static: load cases share a factorization, combinations add up", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(2.0), 2, {2, 1, 1});
     Problem problem;
