@@ -97,6 +97,12 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("in", *from, "a spline file, or a deck (its geometry)")->required();
     sub->add_option("out", *to, "the extension decides: .xml, .mesh, .txt, .inp, .h5")->required();
 
+    const auto verify = std::make_shared<VerifyOptions>();
+    sub = add_command(app, command, "verify", "solve problems with known answers and compare",
+                      [&command, verify] { return run_verify(*verify, command.common); });
+    sub->add_option("--filter", verify->filter, "only cases whose name contains this text");
+    sub->add_flag("--long", verify->with_long, "the long cases too");
+
     const auto bench = std::make_shared<BenchCommandOptions>();
     sub = add_command(app, command, "bench", "time assembly and solvers on this machine",
                       [&command, bench] { return run_bench(*bench, command.common); });

@@ -41,6 +41,12 @@ struct BenchCommandOptions {
     std::filesystem::path save;
 };
 
+struct VerifyOptions {
+    /// Cases whose name contains it; empty: all.
+    std::string filter;
+    bool with_long = false;
+};
+
 /// Each returns the exit code and throws what is wrong.
 int run_solve(const SolveOptions& options, const CommonOptions& common);
 int run_check(const SolveOptions& options, const CommonOptions& common);
@@ -48,6 +54,7 @@ int run_info(const std::filesystem::path& file, const CommonOptions& common);
 int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
                 const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
+int run_verify(const VerifyOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);
 
 }  // namespace couture::drivers

@@ -36,7 +36,7 @@ void le1(Recorder& recorder) {
                        geometry_error<2>(membrane, "bc", ellipse(3.25, 2.75)), rounding);
 }
 
-void le10(Recorder& recorder) {
+void le10(Recorder& recorder, int degree) {
     recorder.set_source("[NAFEMS90] LE10");
     const MultiPatch<3> plate = part<3>("le10_plate");
     Problem problem;
@@ -44,7 +44,7 @@ void le10(Recorder& recorder) {
     problem.supports = {symmetry("dcdc"), symmetry("abab"), hold("bcbc", 0.0, 0.0),
                         hold("mid_line", {}, {}, 0.0)};
     problem.pressures = {pressure("top", 1.0)};
-    const CaseResult<3> result = solve<3>(make_space<3>(plate, 3, {16, 12, 4}), problem);
+    const CaseResult<3> result = solve<3>(make_space<3>(plate, degree, {16, 12, 4}), problem);
     recorder.relative("stress_yy at D on top", -5.38,
                       stress_at<3>(problem, result.displacement, {2.0, 0.0, 0.6})[1], 5e-3);
     recorder.vanishing("geometry error inside", geometry_error<3>(plate, "adad", ellipse(2.0, 1.0)),
@@ -56,7 +56,9 @@ void le10(Recorder& recorder) {
 }  // namespace
 
 std::vector<Case> nafems_cases() {
-    return {{"NAFEMS LE1", false, le1}, {"NAFEMS LE10", false, le10}};
+    return {{"NAFEMS LE1", false, le1},
+            {"NAFEMS LE10", false, [](Recorder& r) { le10(r, 3); }},
+            {"NAFEMS LE10, degree 4", true, [](Recorder& r) { le10(r, 4); }}};
 }
 
 }  // namespace couture::verification

@@ -66,8 +66,8 @@ void observe_orders(Recorder& recorder, Physics physics, const std::string& part
 template <int d>
 Case convergence_case(const std::string& name, Physics physics, const std::string& part_name,
                       const std::vector<Meshes>& meshes,
-                      const std::map<std::string, double>& sizes = {}) {
-    return {name, false,
+                      const std::map<std::string, double>& sizes = {}, bool is_long = false) {
+    return {name, is_long,
             [=](Recorder& r) { observe_orders<d>(r, physics, part_name, sizes, meshes); }};
 }
 
@@ -79,6 +79,7 @@ std::vector<Case> convergence_cases() {
     const std::vector<Meshes> plate = {{1, 8, 16}, {2, 6, 12}, {3, 6, 8}, {4, 8, 10}};
     // Its distorted patches need finer meshes than high degrees can afford.
     const std::vector<Meshes> o_grid = {{1, 6, 12}, {2, 10, 14}};
+    const std::vector<Meshes> fine_plate = {{3, 8, 12}, {4, 8, 12}};
     const std::map<std::string, double> square = {{"half_width", 2.0}};
     return {
         convergence_case<2>("Poisson 2D, quarter annulus", Physics::poisson, "quarter_annulus",
@@ -100,6 +101,8 @@ std::vector<Case> convergence_cases() {
                             "plate_with_hole_3d", plate, square),
         convergence_case<3>("elasticity 3D, O-grid cylinder", Physics::elasticity,
                             "cylinder_o_grid", o_grid),
+        convergence_case<3>("elasticity 3D, plate with hole, fine", Physics::elasticity,
+                            "plate_with_hole_3d", fine_plate, square, true),
     };
 }
 
