@@ -51,7 +51,7 @@ VerificationReport run_verification(const VerificationOptions& options) {
     std::vector<std::string> names;
     bool found = false;
     for (const Case& one : all_cases()) {
-        names.push_back(one.name);
+        names.push_back("'" + one.name + "'");
         if (lower(one.name).find(filter) == std::string::npos) {
             continue;
         }
