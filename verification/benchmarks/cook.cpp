@@ -62,7 +62,7 @@ void compare(Recorder& recorder, const SpacePtr<2>& space, const Problem& proble
 }
 
 void plane_stress(Recorder& recorder) {
-    recorder.set_source("[Cook74]; converged by two codes");
+    recorder.set_source("[Cook74]; converged value");
     Problem problem;
     problem.kinematics = Kinematics::plane_stress;
     problem.materials = {isotropic(1.0, 1.0 / 3.0)};
