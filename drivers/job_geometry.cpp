@@ -1,9 +1,13 @@
 #include "drivers/job_geometry.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/timer.h"
 #include "meshing/parts/parts.h"
 
 namespace couture::drivers {
@@ -102,9 +106,71 @@ io::AnyMultiPatch load_geometry(const io::Deck& deck) {
     return geometry;
 }
 
+namespace {
+
+constexpr double gigabyte = 1024.0 * 1024.0 * 1024.0;
+
+/// What a deck asks for, before anything of that size is made.
+struct ProblemSize {
+    double n_functions = 0.0;
+    /// Bytes of one triangle of the block matrix: every function meets (2 degree + 1)^d others.
+    double matrix_memory = 0.0;
+};
+
+template <int d>
+ProblemSize estimate_size(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                          int n_components) {
+    ProblemSize size;
+    const std::vector<int>& elements = deck.discretization.elements;
+    const double block_bytes = 8.0 * n_components * n_components + 4.0;
+    for (const iga::Patch<d>& patch : geometry.patches) {
+        double functions = 1.0;
+        double blocks = 1.0;
+        for (int k = 0; k < d; ++k) {
+            const iga::KnotVector& knots = patch.knots(k);
+            const int degree = std::max(deck.discretization.degree.value_or(0), knots.degree());
+            const double now = knots.n_elements();
+            const double wanted =
+                elements.empty() ? now : elements[std::min<std::size_t>(k, elements.size() - 1)];
+            // At least: new knots simple, those of the geometry as often as they are.
+            const double n = std::max(now * std::ceil(wanted / now) + degree,
+                                      static_cast<double>(knots.n_basis()));
+            functions *= n;
+            blocks *= n * std::min(2.0 * degree + 1.0, n);
+        }
+        size.n_functions += functions;
+        size.matrix_memory += 0.5 * blocks * block_bytes;
+    }
+    return size;
+}
+
+/// Throws before the first large array is made.
+template <int d>
+void check_size(const io::Deck& deck, const iga::MultiPatch<d>& geometry, int n_components) {
+    const ProblemSize size = estimate_size<d>(deck, geometry, n_components);
+    const auto available = static_cast<double>(available_memory());
+    if (size.matrix_memory > available) {
+        throw SolverError(
+            "{}: the matrix of {:.3g} unknowns takes about {:.1f} GB, {:.1f} GB of memory are "
+            "free; "
+            "take fewer 'elements' or a lower 'degree' in [discretization]",
+            deck.path.string(), n_components * size.n_functions, size.matrix_memory / gigabyte,
+            available / gigabyte);
+    }
+    if (n_components * size.n_functions > std::numeric_limits<int>::max()) {
+        throw SolverError(
+            "{}: {:.3g} unknowns are more than can be numbered ({}); take fewer "
+            "'elements' in [discretization]",
+            deck.path.string(), n_components * size.n_functions, std::numeric_limits<int>::max());
+    }
+}
+
+}  // namespace
+
 template <int d>
 iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
     const io::Discretization& discretization = deck.discretization;
+    check_size<d>(deck, geometry, deck.problem.physics == iga::Physics::poisson ? 1 : d);
     std::optional<std::array<int, d>> elements;
     if (!discretization.elements.empty()) {
         elements = elements_per_direction<d>(discretization);

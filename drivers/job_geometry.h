@@ -18,7 +18,10 @@ template <int d>
 [[nodiscard]] iga::PatchEntity<d> parse_entity(const std::string& text, int n_patches);
 
 /// The space that the deck's discretization makes of the geometry.
-/// @throws InputError  naming where the discretization was written
+/// @throws InputError   naming where the discretization was written
+/// @throws SolverError  before anything large is made, if its matrix alone would not fit into
+/// memory
+///                      or its unknowns can't be numbered: the numbers
 template <int d>
 [[nodiscard]] iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geometry);
 

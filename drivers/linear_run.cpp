@@ -12,22 +12,8 @@ namespace couture::drivers {
 
 namespace {
 
-constexpr double gigabyte = 1024.0 * 1024.0 * 1024.0;
 /// Phases that take longer are announced when they end.
 constexpr double long_phase_seconds = 1.0;
-
-template <int d>
-void check_memory(const iga::MultiPatch<d>& refined, int n_components) {
-    const double needed = estimated_matrix_memory<d>(refined, n_components);
-    const auto available = static_cast<double>(available_memory());
-    if (needed > available) {
-        throw SolverError(
-            "the matrix of {} control points takes about {:.1f} GB, {:.1f} GB of "
-            "memory are free; take fewer 'elements' or a lower 'degree' in "
-            "[discretization]",
-            refined.n_control_points(), needed / gigabyte, available / gigabyte);
-    }
-}
 
 CaseSummary to_summary(const auto& result) {
     return {result.name,      result.energy, result.applied_force, result.foundation_force,
@@ -35,20 +21,6 @@ CaseSummary to_summary(const auto& result) {
 }
 
 }  // namespace
-
-template <int d>
-double estimated_matrix_memory(const iga::MultiPatch<d>& refined, int n_components) {
-    double bytes = 0.0;
-    const double block_bytes = 8.0 * n_components * n_components + 4.0;
-    for (const iga::Patch<d>& patch : refined.patches) {
-        double blocks = 1.0;
-        for (const iga::KnotVector& knots : patch.space().knots) {
-            blocks *= knots.n_basis() * (2.0 * knots.degree() + 1.0);
-        }
-        bytes += 0.5 * blocks * block_bytes;
-    }
-    return bytes;
-}
 
 template <int d>
 Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
@@ -60,10 +32,9 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
         }
     };
     Timer timer;
+    const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
     const auto locations = locate_probes<d>(deck, geometry);
     const iga::SpacePtr<d> space = make_space<d>(deck, geometry);
-    const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
-    check_memory<d>(space->geometry(), n_components);
     add_phase("discretization", timer.seconds());
     log::info(fmt::format("solving for {} unknowns", n_components * space->n_dofs()));
 
@@ -110,8 +81,6 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     return summary;
 }
 
-template double estimated_matrix_memory<2>(const iga::MultiPatch<2>&, int);
-template double estimated_matrix_memory<3>(const iga::MultiPatch<3>&, int);
 template Summary run_linear<2>(const io::Deck&, const iga::MultiPatch<2>&,
                                const std::filesystem::path&, std::vector<Phase>);
 template Summary run_linear<3>(const io::Deck&, const iga::MultiPatch<3>&,

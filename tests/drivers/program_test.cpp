@@ -64,6 +64,17 @@ TEST_CASE("couture solve: a body that can move ends with 1 and one object", "[dr
     CHECK(Json::parse(result.output)["status"] == "failed");
 }
 
+TEST_CASE("couture solve: more memory than there is ends with 1 before anything is made",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result =
+        run_couture("solve " + bar + " --set discretization.elements=4000", folder.path());
+    CHECK(result.exit_code == 1);
+    CHECK(result.errors.find("unknowns takes about") != std::string::npos);
+    CHECK(result.errors.find("take fewer 'elements' or a lower 'degree' in [discretization]") !=
+          std::string::npos);
+}
+
 TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {
     const TemporaryFolder folder;
     REQUIRE(run_couture("solve --out a --threads 1 " + bar, folder.path()).exit_code == 0);
