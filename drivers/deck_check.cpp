@@ -4,6 +4,9 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "iga/core/format.h"
+#include "iga/core/log.h"
+#include "iga/topology/jacobian_certificate.h"
 #include "io/did_you_mean.h"
 
 namespace couture::drivers {
@@ -182,9 +185,47 @@ class DeckCheck {
 
 }  // namespace
 
+namespace {
+
+/// Folds that no quadrature point may see, and places where the map is singular.
+template <int d>
+void warn_of_bad_maps(const iga::MultiPatch<d>& geometry) {
+    for (int p = 0; p < geometry.n_patches(); ++p) {
+        const iga::PatchCertificate<d> certificate = iga::certify(geometry.patches[p]);
+        const std::string where = fmt::format(
+            "det J = {:.3g} at parameter {}, position {}",
+            certificate.orientation * certificate.min_jacobian, format_point(certificate.min_xi),
+            format_point(geometry.patches[p].point(certificate.min_xi)));
+        switch (certificate.validity) {
+            case iga::Validity::folded:
+                log::warn(
+                    fmt::format("patch {} is folded: {}; results near it mean nothing, repair "
+                                "the geometry there",
+                                p, where));
+                break;
+            case iga::Validity::degenerate:
+                log::warn(
+                    fmt::format("patch {} is singular on a side, edge or corner: {}; "
+                                "stresses there are not defined",
+                                p, where));
+                break;
+            case iga::Validity::undecided:
+                log::warn(fmt::format("patch {}: not proven free of folds; smallest {}", p, where));
+                break;
+            case iga::Validity::valid:
+                break;
+        }
+    }
+}
+
+}  // namespace
+
 template <int d>
 void check_deck(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
     DeckCheck<d>(deck, geometry).run();
+    if (geometry.dimension() == d) {
+        warn_of_bad_maps(geometry);
+    }
 }
 
 template void check_deck<2>(const io::Deck&, const iga::MultiPatch<2>&);

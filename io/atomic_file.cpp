@@ -81,6 +81,23 @@ void write_atomically(const fs::path& path,
     }
 }
 
+void require_writable(const fs::path& folder) {
+    std::error_code code;
+    fs::path existing = fs::absolute(folder);
+    while (!fs::exists(existing, code) && existing.has_parent_path() &&
+           existing != existing.parent_path()) {
+        existing = existing.parent_path();
+    }
+    if (!fs::is_directory(existing, code)) {
+        throw FileError("{}: results can't be written there: {} is not a folder", folder.string(),
+                        existing.string());
+    }
+    if (::access(existing.c_str(), W_OK) != 0) {
+        throw FileError("{}: results can't be written there: {}: {}", folder.string(),
+                        existing.string(), std::strerror(errno));
+    }
+}
+
 void write_text(const fs::path& path, std::string_view text) {
     write_atomically(path, [&](const fs::path& temporary) {
         std::ofstream file(temporary, std::ios::binary);

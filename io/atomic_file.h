@@ -13,7 +13,12 @@ namespace couture::io {
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same for a text that is at hand.
+/// Says before a long run what would stop its results: makes nothing.
+///
+/// @throws FileError  if `folder`, or the nearest folder above it that exists, can't be written to
+void require_writable(const std::filesystem::path& folder);
+
+/// Writes a text at hand in the same way.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Removes the temporary files of all writes under way: for a program that is about to end. Writes

@@ -24,6 +24,7 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
     const std::string name = deck.path.stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
+    io::require_writable(folder);
 
     const io::AnyMultiPatch geometry = load_geometry(deck);
     Summary summary = std::visit(

@@ -75,6 +75,33 @@ TEST_CASE("couture solve: more memory than there is ends with 1 before anything 
           std::string::npos);
 }
 
+TEST_CASE("couture solve: results that can't be written end with 2 before the run", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "taken", "a file");
+    const auto result = run_couture("solve " + bar + " --out taken/results", folder.path());
+    CHECK(result.exit_code == 2);
+    CHECK(result.errors.find("taken/results: results can't be written there: ") !=
+          std::string::npos);
+    CHECK(result.errors.find("is not a folder") != std::string::npos);
+    CHECK(result.errors.find("solving for") == std::string::npos);
+}
+
+TEST_CASE("couture check: folds that no quadrature point sees are warned of", "[drivers]") {
+    const TemporaryFolder folder;
+    // The corner (1, 1) is pulled to where det J is barely negative there.
+    io::write_text(folder.path() / "folded.txt",
+                   "# nurbs mesh v.2.1\n2 2 1 0 0\nPATCH 1\n1 1\n2 2\n0 0 1 1\n0 0 1 1\n"
+                   "0 1 0 0.49\n0 0 1 0.49\n1 1 1 1\n");
+    io::write_text(folder.path() / "folded.toml",
+                   "title = \"f\"\n[geometry]\nfile = \"folded.txt\"\n[geometry.sets]\n"
+                   "west = [\"patch 0 side 0:low\"]\n[analysis]\nkinematics = "
+                   "\"plane_strain\"\n[material.any]\nyoungs_modulus = 1.0\n"
+                   "poissons_ratio = 0.3\n[[fixed]]\non = \"west\"\n");
+    const auto result = run_couture("check folded.toml", folder.path());
+    CHECK(result.exit_code == 0);
+    CHECK(result.errors.find("patch 0 is folded: det J = ") != std::string::npos);
+}
+
 TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {
     const TemporaryFolder folder;
     REQUIRE(run_couture("solve --out a --threads 1 " + bar, folder.path()).exit_code == 0);
