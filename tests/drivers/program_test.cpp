@@ -102,6 +102,22 @@ TEST_CASE("couture check: folds that no quadrature point sees are warned of", "[
     CHECK(result.errors.find("patch 0 is folded: det J = ") != std::string::npos);
 }
 
+TEST_CASE("couture bench: every line has a time and a share of the machine", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result = run_couture("bench --quick --json", folder.path());
+    CHECK(result.exit_code == 0);
+    const Json numbers = Json::parse(result.output);
+    CHECK(numbers["machine"][0]["triad_bytes_per_second"] > 1e8);
+    CHECK(numbers["assembly"].size() >= 4);
+    for (const Json& row : numbers["assembly"]) {
+        CHECK(row["seconds"] > 0.0);
+        CHECK(row["flop"] > 0.0);
+    }
+    for (const Json& row : numbers["solution"]) {
+        CHECK(row["residual"] <= 1e-8);
+    }
+}
+
 TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {
     const TemporaryFolder folder;
     REQUIRE(run_couture("solve --out a --threads 1 " + bar, folder.path()).exit_code == 0);
