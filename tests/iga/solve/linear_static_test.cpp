@@ -17,7 +17,7 @@ using namespace couture::iga;
 
 namespace {
 
-/// What SOLVER.md asks of patch tests: the solver's residual times the condition of small systems.
+/// Exact up to the residual of the solver times the condition of these small systems.
 constexpr double exact = 1e-11;
 
 Material isotropic(double E, double nu) {
@@ -152,7 +152,7 @@ TEST_CASE("solve_linear_static: load cases share a factorization, combinations a
 
 TEST_CASE("solve_linear_static: polynomial patch tests on multilinear maps", "[solve]") {
     const int degree = GENERATE(1, 2, 3, 4);
-    // Two distorted cells, the common face turned.
+    // A distorted hexahedron.
     MatrixX corners(8, 3);
     corners << 0, 0, 0, 1, 0.1, 0, 0, 1, 0.1, 1.1, 1, 0, 0, 0.1, 1, 1, 0, 1.1, 0.1, 1, 1, 1, 1, 1;
     MultiPatch<3> part;
