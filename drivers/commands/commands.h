@@ -31,7 +31,7 @@ struct SolveOptions {
 struct CompareOptions {
     std::filesystem::path first;
     std::filesystem::path second;
-    /// Numbers differ if |a - b| > tolerance max(|a|, |b|).
+    /// See drivers/comparison.h.
     double tolerance = 1e-9;
 };
 
