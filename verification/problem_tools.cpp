@@ -45,40 +45,6 @@ Location<d> locate(const MultiPatch<d>& geometry, const Vector3& point) {
 
 }  // namespace
 
-Material isotropic(double youngs_modulus, double poissons_ratio) {
-    Material material;
-    material.name = "solid";
-    material.stiffness = isotropic_stiffness(youngs_modulus, poissons_ratio);
-    return material;
-}
-
-Support hold(const std::string& on, std::optional<double> x, std::optional<double> y,
-             std::optional<double> z) {
-    Support support;
-    support.on = on;
-    const std::array<std::optional<double>, 3> values = {x, y, z};
-    for (int a = 0; a < 3; ++a) {
-        if (values[a]) {
-            support.components[a] = constant(*values[a]);
-        }
-    }
-    return support;
-}
-
-Support symmetry(const std::string& on) {
-    Support support;
-    support.on = on;
-    support.normal = constant(0.0);
-    return support;
-}
-
-Pressure pressure(const std::string& on, double value) {
-    Pressure load;
-    load.on = on;
-    load.value = constant(value);
-    return load;
-}
-
 template <int d>
 MultiPatch<d> part(const std::string& name, const std::map<std::string, double>& parameters) {
     return std::get<MultiPatch<d>>(meshing::make_part(name, parameters));

@@ -11,13 +11,6 @@
 
 namespace couture::verification {
 
-[[nodiscard]] iga::Material isotropic(double youngs_modulus, double poissons_ratio);
-/// Holds the components that are given at these values.
-[[nodiscard]] iga::Support hold(const std::string& on, std::optional<double> x,
-                                std::optional<double> y, std::optional<double> z = {});
-[[nodiscard]] iga::Support symmetry(const std::string& on);
-[[nodiscard]] iga::Pressure pressure(const std::string& on, double value);
-
 /// A part of `meshing/parts` of known dimension.
 template <int d>
 [[nodiscard]] iga::MultiPatch<d> part(const std::string& name,

@@ -18,7 +18,7 @@ namespace {
 /// Two directions, or two prescribed values, nearer than this (relative) are one.
 constexpr double same_direction = 1e-8;
 constexpr double same_value = 1e-6;
-/// A set whose unit normals differ by more than this is curved.
+/// A side whose unit normals differ by more than this is curved.
 constexpr double flatness = 1e-6;
 
 template <int d>
@@ -82,36 +82,34 @@ VectorX project(const Space<d>& space, const BoundarySet<d>& set, const std::vec
     return x;
 }
 
-/// The normal of a plane set.
+/// The normal of a plane side.
 template <int d>
-Vector3 plane_normal(const Space<d>& space, const BoundarySet<d>& set, const Support& support) {
+Vector3 plane_normal(const Space<d>& space, const PatchEntity<d>& side, const Support& support) {
     std::optional<Vector3> normal;
     const std::string prefix = support.source.empty() ? "" : support.source + ": ";
-    for (const PatchEntity<d>& entity : set) {
-        if (!entity.is_side()) {
-            throw InputError(
-                "{}normal displacement on '{}': {} is not a side and has no normal; "
-                "hold its components instead",
-                prefix, support.on, entity.name());
-        }
-        for_entity_points<d>(space, entity, {}, [&](const EntityPoint<d>& point) {
-            if (!(point.normal.norm() > 0.5)) {
-                return;
-            }
-            normal = normal.value_or(point.normal);
-            const double gap = (point.normal - *normal).norm();
-            if (gap > flatness) {
-                throw InputError(
-                    "{}normal displacement on '{}': the set is curved, its normal is "
-                    "{} at one place and {} at {}; a normal can be held on a plane "
-                    "only (a stiff [[foundation]] with 'normal' holds a curved one)",
-                    prefix, support.on, format_point(*normal), format_point(point.normal),
-                    format_point(point.x));
-            }
-        });
+    if (!side.is_side()) {
+        throw InputError(
+            "{}normal displacement on '{}': {} is not a side and has no normal; "
+            "hold its components instead",
+            prefix, support.on, side.name());
     }
+    for_entity_points<d>(space, side, {}, [&](const EntityPoint<d>& point) {
+        if (!(point.normal.norm() > 0.5)) {
+            return;
+        }
+        normal = normal.value_or(point.normal);
+        if ((point.normal - *normal).norm() > flatness) {
+            throw InputError(
+                "{}normal displacement on '{}': {} is curved, its normal is {} at one place and {} "
+                "at {}; a normal can be held on planes only (a stiff [[foundation]] with 'normal' "
+                "holds a curved side)",
+                prefix, support.on, side.name(), format_point(*normal), format_point(point.normal),
+                format_point(point.x));
+        }
+    });
     if (!normal) {
-        throw InputError("{}normal displacement on '{}': the set has no area", prefix, support.on);
+        throw InputError("{}normal displacement on '{}': {} has no area", prefix, support.on,
+                         side.name());
     }
     // Exactly along an axis where it is so up to rounding.
     for (int a = 0; a < d; ++a) {
@@ -120,6 +118,31 @@ Vector3 plane_normal(const Space<d>& space, const BoundarySet<d>& set, const Sup
         }
     }
     return *normal;
+}
+
+template <int d>
+struct PlanePiece {
+    Vector3 normal;
+    BoundarySet<d> sides;
+};
+
+/// The sides of a set by their normals.
+template <int d>
+std::vector<PlanePiece<d>> plane_pieces(const Space<d>& space, const BoundarySet<d>& set,
+                                        const Support& support) {
+    std::vector<PlanePiece<d>> pieces;
+    for (const PatchEntity<d>& side : set) {
+        const Vector3 normal = plane_normal(space, side, support);
+        const auto same = std::find_if(
+            pieces.begin(), pieces.end(),
+            [&](const PlanePiece<d>& piece) { return (piece.normal - normal).norm() <= flatness; });
+        if (same != pieces.end()) {
+            same->sides.push_back(side);
+        } else {
+            pieces.push_back({normal, {side}});
+        }
+    }
+    return pieces;
 }
 
 }  // namespace
@@ -208,9 +231,10 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
 
     for (std::size_t s = 0; s < problem.supports.size(); ++s) {
         const Support& support = problem.supports[s];
-        const BoundarySet<d>& set = space.geometry().boundary_set(support.on);
-        const std::vector<int> dofs = dofs_of_set(space, set);
-        const auto apply = [&](const Vector<d>& direction, const Function& function) {
+        const BoundarySet<d>& whole_set = space.geometry().boundary_set(support.on);
+        const auto apply = [&](const BoundarySet<d>& set, const Vector<d>& direction,
+                               const Function& function) {
+            const std::vector<int> dofs = dofs_of_set(space, set);
             const VectorX value = project(space, set, dofs, positions, function);
             for (std::size_t i = 0; i < dofs.size(); ++i) {
                 VectorX values(n_cases);
@@ -222,11 +246,13 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
         };
         for (int a = 0; a < nc; ++a) {
             if (support.components[a]) {
-                apply(Vector<d>::Unit(a), *support.components[a]);
+                apply(whole_set, Vector<d>::Unit(a), *support.components[a]);
             }
         }
         if (support.normal && nc == d) {
-            apply(plane_normal(space, set, support).template head<d>(), *support.normal);
+            for (const PlanePiece<d>& piece : plane_pieces(space, whole_set, support)) {
+                apply(piece.sides, piece.normal.template head<d>(), *support.normal);
+            }
         }
     }
 

@@ -25,7 +25,7 @@ template <int d>
                                        const std::string& load_case, const Vector3& x);
 
 /// True if an entry with `load_case` acts in the case `name`.
-[[nodiscard]] inline bool acts_in(const Entry& entry, const std::string& name) {
+[[nodiscard]] inline bool acts_in(const CaseEntry& entry, const std::string& name) {
     return entry.load_case.empty() || entry.load_case == name;
 }
 

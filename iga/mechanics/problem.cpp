@@ -7,7 +7,7 @@ namespace couture::iga {
 std::vector<std::string> Problem::load_cases() const {
     std::vector<std::string> names;
     const auto add = [&names](const auto& entries) {
-        for (const Entry& entry : entries) {
+        for (const CaseEntry& entry : entries) {
             if (!entry.load_case.empty() &&
                 std::find(names.begin(), names.end(), entry.load_case) == names.end()) {
                 names.push_back(entry.load_case);
@@ -25,6 +25,40 @@ std::vector<std::string> Problem::load_cases() const {
         names.emplace_back();
     }
     return names;
+}
+
+Material make_isotropic(const std::string& name, double youngs_modulus, double poissons_ratio) {
+    Material material;
+    material.name = name;
+    material.stiffness = isotropic_stiffness(youngs_modulus, poissons_ratio);
+    return material;
+}
+
+Support make_support(const std::string& on, std::optional<double> x, std::optional<double> y,
+                     std::optional<double> z) {
+    Support support;
+    support.on = on;
+    const std::array<std::optional<double>, 3> values = {x, y, z};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values[i]) {
+            support.components[i] = constant(*values[i]);
+        }
+    }
+    return support;
+}
+
+Support make_symmetry(const std::string& on) {
+    Support support;
+    support.on = on;
+    support.normal = constant(0.0);
+    return support;
+}
+
+Pressure make_pressure(const std::string& on, double value) {
+    Pressure load;
+    load.on = on;
+    load.value = constant(value);
+    return load;
 }
 
 }  // namespace couture::iga

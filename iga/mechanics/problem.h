@@ -34,40 +34,44 @@ struct Material {
 struct Entry {
     /// Where it was written ("part.toml:14"), for messages; may be empty.
     std::string source;
-    /// Load case; empty: acts in every case.
+};
+
+/// What may belong to one load case.
+struct CaseEntry : Entry {
+    /// Empty: acts in every case.
     std::string load_case;
 };
 
 /// Prescribed displacement on a named set; for Poisson the value is component 0.
-struct Support : Entry {
+struct Support : CaseEntry {
     std::string on;
     /// Nothing: free in that direction.
     std::array<std::optional<Function>, 3> components;
-    /// Displacement along the outward normal; the set must be plane (0: symmetry).
+    /// Displacement along the outward normal; each side of the set must be plane (0: symmetry).
     std::optional<Function> normal;
 };
 
 /// Force per area in the axes' directions; for Poisson the inward flux is component 0. On a set of
 /// edges: force per length.
-struct Traction : Entry {
+struct Traction : CaseEntry {
     std::string on;
     std::array<Function, 3> components;
 };
 
 /// Force per area against the outward normal.
-struct Pressure : Entry {
+struct Pressure : CaseEntry {
     std::string on;
     Function value;
 };
 
 /// Force per volume; for Poisson the source is component 0.
-struct BodyForce : Entry {
+struct BodyForce : CaseEntry {
     PatchList patches;
     std::array<Function, 3> components;
 };
 
 /// A concentrated force at a point of the body, or at each corner of a named set of corners.
-struct PointLoad : Entry {
+struct PointLoad : CaseEntry {
     std::string on;
     std::optional<Vector3> at;
     Vector3 force = Vector3::Zero();
@@ -79,7 +83,7 @@ enum class Spread {
 };
 
 /// Total force and total moment about the set's centroid on a named set of sides.
-struct Resultant : Entry {
+struct Resultant : CaseEntry {
     std::string on;
     Vector3 force = Vector3::Zero();
     Vector3 moment = Vector3::Zero();
@@ -87,7 +91,7 @@ struct Resultant : Entry {
 };
 
 /// Springs to the ground: traction = -stiffness * displacement, along the normal and in the axes'
-/// directions, per area.
+/// directions, per area, in every load case.
 struct Foundation : Entry {
     std::string on;
     std::optional<Function> normal;
@@ -95,7 +99,7 @@ struct Foundation : Entry {
 };
 
 /// Temperature above the strain-free state.
-struct Temperature : Entry {
+struct Temperature : CaseEntry {
     PatchList patches;
     Function change;
 };
@@ -120,5 +124,18 @@ struct Problem {
     /// Names of the load cases in order of appearance; one unnamed case if none is named.
     [[nodiscard]] std::vector<std::string> load_cases() const;
 };
+
+/// An isotropic elastic material for all patches. @throws InputError  as `isotropic_stiffness`
+[[nodiscard]] Material make_isotropic(const std::string& name, double youngs_modulus,
+                                      double poissons_ratio);
+
+/// Holds the components that are given at these values.
+[[nodiscard]] Support make_support(const std::string& on, std::optional<double> x,
+                                   std::optional<double> y, std::optional<double> z = {});
+
+/// No displacement along the normal of a set of plane sides.
+[[nodiscard]] Support make_symmetry(const std::string& on);
+
+[[nodiscard]] Pressure make_pressure(const std::string& on, double value);
 
 }  // namespace couture::iga

@@ -34,7 +34,7 @@ void plane_stress_cantilever(Recorder& recorder) {
     const MultiPatch<2> beam = part<2>("rectangle", {{"length_x", length}, {"length_y", height}});
     Problem problem;
     problem.kinematics = Kinematics::plane_stress;
-    problem.materials = {isotropic(youngs_modulus, nu)};
+    problem.materials = {make_isotropic("solid", youngs_modulus, nu)};
     Support root;
     root.on = "x_low";
     for (int a = 0; a < 2; ++a) {
@@ -67,8 +67,8 @@ void clamped_solid(Recorder& recorder) {
     recorder.set_source("Timoshenko beam, k of [Cowper66]");
     for (const double nu : {0.0, 0.3}) {
         Problem problem;
-        problem.materials = {isotropic(youngs_modulus, nu)};
-        problem.supports = {hold("clamped", 0.0, 0.0, 0.0)};
+        problem.materials = {make_isotropic("solid", youngs_modulus, nu)};
+        problem.supports = {make_support("clamped", 0.0, 0.0, 0.0)};
         Resultant tip;
         tip.on = "tip";
         tip.force = Vector3(0.0, 0.0, -force);

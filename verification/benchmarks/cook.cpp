@@ -65,8 +65,8 @@ void plane_stress(Recorder& recorder) {
     recorder.set_source("[Cook74]; converged value");
     Problem problem;
     problem.kinematics = Kinematics::plane_stress;
-    problem.materials = {isotropic(1.0, 1.0 / 3.0)};
-    problem.supports = {hold("clamped", 0.0, 0.0)};
+    problem.materials = {make_isotropic("solid", 1.0, 1.0 / 3.0)};
+    problem.supports = {make_support("clamped", 0.0, 0.0)};
     problem.tractions = {shear(1.0)};
     compare(recorder, graded_space(8, 16, 3), problem, 23.9675, 25.189, 1e-4);
 }
@@ -82,8 +82,8 @@ void nearly_incompressible(Recorder& recorder, double lambda, const SpacePtr<2>&
     const double nu = lambda / (2.0 * (lambda + shear_modulus));
     Problem problem;
     problem.kinematics = Kinematics::plane_strain;
-    problem.materials = {isotropic(E, nu)};
-    problem.supports = {hold("clamped", 0.0, 0.0)};
+    problem.materials = {make_isotropic("solid", E, nu)};
+    problem.supports = {make_support("clamped", 0.0, 0.0)};
     problem.tractions = {shear(1.0)};
     compare(recorder, space, problem, middle, corner, bound, options);
 }

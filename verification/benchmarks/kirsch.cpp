@@ -42,8 +42,8 @@ void plate_with_hole(Recorder& recorder) {
     const MultiPatch<2> plate = part<2>("plate_with_hole");
     Problem problem;
     problem.kinematics = Kinematics::plane_stress;
-    problem.materials = {isotropic(210e3, 0.3)};
-    problem.supports = {symmetry("cut_x"), symmetry("cut_y")};
+    problem.materials = {make_isotropic("solid", 210e3, 0.3)};
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y")};
     problem.tractions = {exact_traction("x_high", 0), exact_traction("y_high", 1)};
     const CaseResult<2> result = solve<2>(make_space<2>(plate, 5, {16, 10}), problem);
 

@@ -48,8 +48,8 @@ Radial hollow_sphere(double r) {
 Problem under_pressure(Kinematics kinematics) {
     Problem problem;
     problem.kinematics = kinematics;
-    problem.materials = {isotropic(youngs_modulus, poissons_ratio)};
-    problem.pressures = {pressure("inner", internal_pressure)};
+    problem.materials = {make_isotropic("solid", youngs_modulus, poissons_ratio)};
+    problem.pressures = {make_pressure("inner", internal_pressure)};
     return problem;
 }
 
@@ -98,7 +98,7 @@ void thick_cylinder_plane_strain(Recorder& recorder) {
     recorder.set_source(source);
     const MultiPatch<2> ring = part<2>("thick_cylinder");
     Problem problem = under_pressure(Kinematics::plane_strain);
-    problem.supports = {symmetry("cut_x"), symmetry("cut_y")};
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y")};
     compare<2>(recorder, make_space<2>(ring, 4, {8, 4}), problem, thick_cylinder, 1);
     compare_shape<2>(recorder, ring, distance_from_centre);
 }
@@ -107,8 +107,8 @@ void thick_cylinder_solid(Recorder& recorder) {
     recorder.set_source(source);
     const MultiPatch<3> ring = part<3>("thick_cylinder_3d");
     Problem problem = under_pressure(Kinematics::solid);
-    problem.supports = {symmetry("cut_x"), symmetry("cut_y"), symmetry("z_low"),
-                        symmetry("z_high")};
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y"), make_symmetry("z_low"),
+                        make_symmetry("z_high")};
     compare<3>(recorder, make_space<3>(ring, 4, {8, 4, 1}), problem, thick_cylinder, 1);
     compare_shape<3>(recorder, ring, [](const Vector3& x) { return x.template head<2>().norm(); });
 }
@@ -122,7 +122,7 @@ void thick_cylinder_axisymmetric(Recorder& recorder) {
     strip.boundary_sets = {{"inner", {make_side<2>(0, 0)}},
                            {"ends", {make_side<2>(0, 2), make_side<2>(0, 3)}}};
     Problem problem = under_pressure(Kinematics::axisymmetric);
-    problem.supports = {hold("ends", {}, 0.0)};
+    problem.supports = {make_support("ends", {}, 0.0)};
     compare<2>(recorder, make_space<2>(strip, 4, {8, 1}), problem, thick_cylinder, 2);
 }
 
@@ -130,7 +130,7 @@ void hollow_sphere_solid(Recorder& recorder) {
     recorder.set_source(source);
     const MultiPatch<3> sphere = part<3>("hollow_sphere");
     Problem problem = under_pressure(Kinematics::solid);
-    problem.supports = {symmetry("cut_x"), symmetry("cut_y"), symmetry("cut_z")};
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y"), make_symmetry("cut_z")};
     compare<3>(recorder, make_space<3>(sphere, 4, {8, 4, 4}), problem, hollow_sphere, 1);
     compare_shape<3>(recorder, sphere, distance_from_centre);
 }
@@ -140,11 +140,11 @@ void hollow_sphere_axisymmetric(Recorder& recorder) {
     const MultiPatch<2> meridian = part<2>("half_annulus");
     Problem problem = under_pressure(Kinematics::axisymmetric);
     // On the axis no point moves across it; the mean plane y = 0 is the patches' common side.
-    problem.supports = {hold("axis", 0.0, {})};
+    problem.supports = {make_support("axis", 0.0, {})};
     MultiPatch<2> held = meridian;
     const Interface<2>& equator = held.interfaces.at(0);
     held.boundary_sets["equator"] = {make_side<2>(equator.first_patch, equator.first_side)};
-    problem.supports.push_back(hold("equator", {}, 0.0));
+    problem.supports.push_back(make_support("equator", {}, 0.0));
     compare<2>(recorder, make_space<2>(held, 4, {8, 4}), problem, hollow_sphere, 2);
     compare_shape<2>(recorder, meridian, distance_from_centre);
 }

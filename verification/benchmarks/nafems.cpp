@@ -24,9 +24,9 @@ void le1(Recorder& recorder) {
     Problem problem;
     problem.kinematics = Kinematics::plane_stress;
     problem.thickness = 0.1;
-    problem.materials = {isotropic(youngs_modulus, poissons_ratio)};
-    problem.supports = {symmetry("ab"), symmetry("cd")};
-    problem.pressures = {pressure("bc", -10.0)};
+    problem.materials = {make_isotropic("solid", youngs_modulus, poissons_ratio)};
+    problem.supports = {make_symmetry("ab"), make_symmetry("cd")};
+    problem.pressures = {make_pressure("bc", -10.0)};
     const CaseResult<2> result = solve<2>(make_space<2>(membrane, 4, 12), problem);
     recorder.relative("stress_yy at D", 92.7,
                       stress_at<2>(problem, result.displacement, {2.0, 0.0, 0.0})[1], 1e-3);
@@ -40,10 +40,10 @@ void le10(Recorder& recorder, int degree) {
     recorder.set_source("[NAFEMS90] LE10");
     const MultiPatch<3> plate = part<3>("le10_plate");
     Problem problem;
-    problem.materials = {isotropic(youngs_modulus, poissons_ratio)};
-    problem.supports = {symmetry("dcdc"), symmetry("abab"), hold("bcbc", 0.0, 0.0),
-                        hold("mid_line", {}, {}, 0.0)};
-    problem.pressures = {pressure("top", 1.0)};
+    problem.materials = {make_isotropic("solid", youngs_modulus, poissons_ratio)};
+    problem.supports = {make_symmetry("dcdc"), make_symmetry("abab"),
+                        make_support("bcbc", 0.0, 0.0), make_support("mid_line", {}, {}, 0.0)};
+    problem.pressures = {make_pressure("top", 1.0)};
     const CaseResult<3> result = solve<3>(make_space<3>(plate, degree, {16, 12, 4}), problem);
     recorder.relative("stress_yy at D on top", -5.38,
                       stress_at<3>(problem, result.displacement, {2.0, 0.0, 0.6})[1], 5e-3);

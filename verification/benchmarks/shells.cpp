@@ -21,8 +21,9 @@ void scordelis_lo(Recorder& recorder) {
     constexpr double weight_per_area = 90.0;
     const MultiPatch<3> roof = part<3>("scordelis_lo");
     Problem problem;
-    problem.materials = {isotropic(4.32e8, 0.0)};
-    problem.supports = {symmetry("crown"), symmetry("mid_span"), hold("diaphragm", 0.0, {}, 0.0)};
+    problem.materials = {make_isotropic("solid", 4.32e8, 0.0)};
+    problem.supports = {make_symmetry("crown"), make_symmetry("mid_span"),
+                        make_support("diaphragm", 0.0, {}, 0.0)};
     BodyForce weight;
     weight.components = {constant(0.0), constant(0.0), constant(-weight_per_area / thickness)};
     problem.body_forces = {weight};
@@ -53,9 +54,9 @@ void pinched_cylinder(Recorder& recorder) {
     constexpr double thickness = 3.0;
     const MultiPatch<3> octant = part<3>("pinched_cylinder");
     Problem problem;
-    problem.materials = {isotropic(3e6, 0.3)};
-    problem.supports = {symmetry("cut_x"), symmetry("cut_z"), symmetry("mid_span"),
-                        hold("diaphragm", 0.0, {}, 0.0)};
+    problem.materials = {make_isotropic("solid", 3e6, 0.3)};
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_z"), make_symmetry("mid_span"),
+                        make_support("diaphragm", 0.0, {}, 0.0)};
     PointLoad load;
     load.on = "load_point";
     load.force = Vector3(0.0, 0.0, -0.25);

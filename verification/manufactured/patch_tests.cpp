@@ -203,7 +203,7 @@ void rigid_motions(Recorder& recorder, const std::string& name, int degree) {
     const SpacePtr<d> space = make_space<d>(part<d>(name), degree, 1);
     Problem problem;
     problem.kinematics = d == 2 ? Kinematics::plane_strain : Kinematics::solid;
-    problem.materials = {isotropic(1.0, 0.3)};
+    problem.materials = {make_isotropic("solid", 1.0, 0.3)};
     const BlockMatrix K = assemble<d>(*space, stiffness_form<d>(problem, space->n_patches()));
     const MatrixX dense = K * MatrixX::Identity(K.n_unknowns(), K.n_unknowns());
     const VectorX energies =

@@ -69,7 +69,7 @@ Problem wave_problem(const WaveSolution& solution, Physics physics) {
     if (d == 2) {
         problem.kinematics = Kinematics::plane_strain;
     }
-    problem.materials = {isotropic(youngs_modulus, poissons_ratio)};
+    problem.materials = {make_isotropic("solid", youngs_modulus, poissons_ratio)};
     problem.materials[0].conductivity = conductivity;
     Support support;
     support.on = "outer";

@@ -20,33 +20,6 @@ namespace {
 /// Exact up to the residual of the solver times the condition of these small systems.
 constexpr double exact = 1e-11;
 
-Material isotropic(double E, double nu) {
-    Material material;
-    material.name = "steel";
-    material.stiffness = isotropic_stiffness(E, nu);
-    return material;
-}
-
-Support hold(const std::string& on, std::optional<double> x, std::optional<double> y,
-             std::optional<double> z) {
-    Support support;
-    support.on = on;
-    const std::array<std::optional<double>, 3> values = {x, y, z};
-    for (int a = 0; a < 3; ++a) {
-        if (values[a]) {
-            support.components[a] = constant(*values[a]);
-        }
-    }
-    return support;
-}
-
-Support symmetry(const std::string& on) {
-    Support support;
-    support.on = on;
-    support.normal = constant(0.0);
-    return support;
-}
-
 /// The six sides as sets "side_0" .. "side_5", and all as "outer".
 template <int d>
 void name_sides(MultiPatch<d>& part) {
@@ -73,8 +46,8 @@ SpacePtr<d> space_of(const MultiPatch<d>& part, int degree, std::array<int, d> n
 TEST_CASE("solve_linear_static: a bar in tension", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(4.0), 2, {4, 2, 2});
     Problem problem;
-    problem.materials = {isotropic(200.0, 0.3)};
-    problem.supports = {symmetry("side_0"), symmetry("side_2"), symmetry("side_4")};
+    problem.materials = {make_isotropic("steel", 200.0, 0.3)};
+    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2"), make_symmetry("side_4")};
     Resultant pull;
     pull.on = "side_1";
     pull.force = Vector3(10.0, 0.0, 0.0);
@@ -104,8 +77,8 @@ TEST_CASE("solve_linear_static: a needle bends as slender beams do", "[solve]") 
     name_sides(part);
     const SpacePtr<3> space = space_of<3>(part, 3, {8, 1, 1});
     Problem problem;
-    problem.materials = {isotropic(1e6, 0.0)};
-    problem.supports = {hold("side_0", 0.0, 0.0, 0.0)};
+    problem.materials = {make_isotropic("steel", 1e6, 0.0)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0)};
     Resultant push;
     push.on = "side_1";
     push.force = Vector3(0.0, 1e-3, 0.0);
@@ -123,9 +96,9 @@ TEST_CASE("solve_linear_static: a needle bends as slender beams do", "[solve]") 
 TEST_CASE("solve_linear_static: load cases share a factorization, combinations add up", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(2.0), 2, {2, 1, 1});
     Problem problem;
-    problem.materials = {isotropic(100.0, 0.25)};
+    problem.materials = {make_isotropic("steel", 100.0, 0.25)};
     problem.materials[0].thermal_expansion = Vector3::Constant(1e-3);
-    problem.supports = {symmetry("side_0"), symmetry("side_2"), symmetry("side_4")};
+    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2"), make_symmetry("side_4")};
     Pressure pressure;
     pressure.on = "side_1";
     pressure.value = constant(-1.0);
@@ -175,7 +148,7 @@ TEST_CASE("solve_linear_static: polynomial patch tests on multilinear maps", "[s
         return p < derivative ? 0.0 : factor * std::pow(1.0 + direction.dot(x), p - derivative);
     };
     Problem problem;
-    problem.materials = {isotropic(E, nu)};
+    problem.materials = {make_isotropic("steel", E, nu)};
     Support support;
     support.on = "outer";
     BodyForce force;
@@ -210,7 +183,7 @@ TEST_CASE("solve_linear_static: pressurised ring, plane strain and axisymmetric 
     constexpr double u_inner = 1.906666666666667e-3;
     constexpr double u_outer = 1.213333333333333e-3;
     Problem problem;
-    problem.materials = {isotropic(1000.0, 0.3)};
+    problem.materials = {make_isotropic("steel", 1000.0, 0.3)};
     Pressure pressure;
     pressure.value = constant(1.0);
     SECTION("quarter ring") {
@@ -218,7 +191,7 @@ TEST_CASE("solve_linear_static: pressurised ring, plane strain and axisymmetric 
         part.patches = {make_quarter_annulus(1.0, 2.0)};
         name_sides(part);
         problem.kinematics = Kinematics::plane_strain;
-        problem.supports = {symmetry("side_2"), symmetry("side_3")};
+        problem.supports = {make_symmetry("side_2"), make_symmetry("side_3")};
         pressure.on = "side_0";
         problem.pressures = {pressure};
         const auto result = solve_linear_static(space_of<2>(part, 4, {8, 4}), problem);
@@ -235,7 +208,7 @@ TEST_CASE("solve_linear_static: pressurised ring, plane strain and axisymmetric 
         part.patches = {make_multilinear<2>(corners)};
         name_sides(part);
         problem.kinematics = Kinematics::axisymmetric;
-        problem.supports = {symmetry("side_2"), symmetry("side_3")};
+        problem.supports = {make_symmetry("side_2"), make_symmetry("side_3")};
         pressure.on = "side_0";
         problem.pressures = {pressure};
         const auto result = solve_linear_static(space_of<2>(part, 4, {8, 1}), problem);
@@ -256,8 +229,8 @@ TEST_CASE("solve_linear_static: slanted symmetry planes hold the normal only", "
     name_sides(part);
     Problem problem;
     problem.kinematics = Kinematics::plane_strain;
-    problem.materials = {isotropic(1000.0, 0.3)};
-    problem.supports = {symmetry("side_0"), symmetry("side_1")};
+    problem.materials = {make_isotropic("steel", 1000.0, 0.3)};
+    problem.supports = {make_symmetry("side_0"), make_symmetry("side_1")};
     Pressure pressure;
     pressure.on = "side_2";
     pressure.value = constant(1.0);
@@ -271,8 +244,8 @@ TEST_CASE("solve_linear_static: slanted symmetry planes hold the normal only", "
 TEST_CASE("solve_linear_static: moments, foundations and point loads balance", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(3.0), 3, {4, 2, 2});
     Problem problem;
-    problem.materials = {isotropic(100.0, 0.3)};
-    problem.supports = {hold("side_0", 0.0, 0.0, 0.0)};
+    problem.materials = {make_isotropic("steel", 100.0, 0.3)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0)};
     Resultant bend;
     bend.on = "side_1";
     bend.moment = Vector3(0.0, 0.5, 0.0);
@@ -294,13 +267,13 @@ TEST_CASE("solve_linear_static: moments, foundations and point loads balance", "
 TEST_CASE("solve_linear_static: free rigid motions are named", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(2.0), 1, {1, 1, 1});
     Problem problem;
-    problem.materials = {isotropic(1.0, 0.3)};
+    problem.materials = {make_isotropic("steel", 1.0, 0.3)};
     CHECK_THROWS_WITH(solve_linear_static(space, problem),
                       "the body is not held: free rigid-body motions: translation along x, "
                       "translation along y, translation along z, rotation about x, rotation about "
                       "y, rotation about z; add supports ([[fixed]], [[symmetry]], "
                       "[[displacement]]) or a [[foundation]]");
-    problem.supports = {symmetry("side_0"), symmetry("side_2")};
+    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2")};
     CHECK_THROWS_WITH(solve_linear_static(space, problem),
                       Catch::Matchers::Contains("motions: translation along z; add"));
     Foundation springs;
@@ -313,14 +286,14 @@ TEST_CASE("solve_linear_static: free rigid motions are named", "[solve]") {
 TEST_CASE("solve_linear_static: supports that contradict or can't hold are named", "[solve]") {
     const SpacePtr<3> space = space_of<3>(bar(2.0), 1, {1, 1, 1});
     Problem problem;
-    problem.materials = {isotropic(1.0, 0.3)};
-    problem.supports = {hold("side_0", 0.0, 0.0, 0.0), hold("side_2", 0.1, {}, {})};
+    problem.materials = {make_isotropic("steel", 1.0, 0.3)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0), make_support("side_2", 0.1, {}, {})};
     CHECK_THROWS_WITH(solve_linear_static(space, problem),
                       Catch::Matchers::Contains("displacement on 'side_2' contradicts the one on "
                                                 "'side_0' at "));
-    problem.supports = {hold("side_7", 0.0, 0.0, 0.0)};
+    problem.supports = {make_support("side_7", 0.0, 0.0, 0.0)};
     CHECK_THROWS_AS(solve_linear_static(space, problem), TopologyError);
-    problem.supports = {hold("side_0", 0.0, 0.0, 0.0)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0)};
     problem.materials.clear();
     CHECK_THROWS_WITH(solve_linear_static(space, problem),
                       Catch::Matchers::Contains("patch 0 has no material"));
@@ -336,7 +309,7 @@ TEST_CASE("solve_linear_static: Poisson on a curved ring", "[solve]") {
     Material material;
     material.conductivity = 2.0;
     problem.materials = {material};
-    problem.supports = {hold("side_1", std::log(2.0), {}, {})};
+    problem.supports = {make_support("side_1", std::log(2.0), {}, {})};
     Traction flux;
     flux.on = "side_0";
     flux.components = {constant(-2.0), constant(0.0), constant(0.0)};
