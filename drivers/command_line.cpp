@@ -111,7 +111,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
 
     sub = add_command(app, command, "compare", "say what differs between two results",
                       [&command, compare] { return run_compare(*compare, command.common); });
-    sub->add_option("first", compare->first, "a summary (.json), a field (.vtu) or a spline file")->required();
+    sub->add_option("first", compare->first, "a summary (.json), a field (.vtu) or a spline file")
+        ->required();
     sub->add_option("second", compare->second, "another of the same kind")->required();
     sub->add_option("--tolerance", compare->tolerance, "relative difference that counts as none")
         ->check(CLI::NonNegativeNumber);

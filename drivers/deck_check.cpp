@@ -6,7 +6,6 @@
 #include "iga/core/error.h"
 #include "iga/core/format.h"
 #include "iga/core/log.h"
-#include "iga/topology/jacobian_certificate.h"
 #include "io/did_you_mean.h"
 
 namespace couture::drivers {
@@ -187,11 +186,17 @@ class DeckCheck {
 
 namespace {
 
-/// Folds that no quadrature point may see, and places where the map is singular.
+/// Warns of folds that no quadrature point may see, and of places where the map is singular.
 template <int d>
-void warn_of_bad_maps(const iga::MultiPatch<d>& geometry) {
+GeometryCertificate certify_patches(const iga::MultiPatch<d>& geometry) {
+    GeometryCertificate whole;
     for (int p = 0; p < geometry.n_patches(); ++p) {
         const iga::PatchCertificate<d> certificate = iga::certify(geometry.patches[p]);
+        whole.validity = std::max(whole.validity, certificate.validity);
+        if (certificate.min_jacobian < whole.min_jacobian) {
+            whole.min_jacobian = certificate.min_jacobian;
+            whole.patch = p;
+        }
         const std::string where = fmt::format(
             "det J = {:.3g} at parameter {}, position {}",
             certificate.orientation * certificate.min_jacobian, format_point(certificate.min_xi),
@@ -216,19 +221,18 @@ void warn_of_bad_maps(const iga::MultiPatch<d>& geometry) {
                 break;
         }
     }
+    return whole;
 }
 
 }  // namespace
 
 template <int d>
-void check_deck(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
+GeometryCertificate check_deck(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
     DeckCheck<d>(deck, geometry).run();
-    if (geometry.dimension() == d) {
-        warn_of_bad_maps(geometry);
-    }
+    return certify_patches(geometry);
 }
 
-template void check_deck<2>(const io::Deck&, const iga::MultiPatch<2>&);
-template void check_deck<3>(const io::Deck&, const iga::MultiPatch<3>&);
+template GeometryCertificate check_deck<2>(const io::Deck&, const iga::MultiPatch<2>&);
+template GeometryCertificate check_deck<3>(const io::Deck&, const iga::MultiPatch<3>&);
 
 }  // namespace couture::drivers

@@ -24,7 +24,8 @@ CaseSummary to_summary(const auto& result) {
 
 template <int d>
 Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
-                   const std::filesystem::path& folder, std::vector<Phase> phases) {
+                   const GeometryCertificate& certificate, const std::filesystem::path& folder,
+                   std::vector<Phase> phases) {
     const auto add_phase = [&](const std::string& name, double seconds) {
         phases.push_back({name, seconds, peak_memory()});
         if (seconds > long_phase_seconds) {
@@ -55,7 +56,7 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     summary.probes = evaluate_probes<d>(deck, locations, result, summary.volume);
     add_phase("probes", timer.seconds());
     timer = {};
-    for (const auto& file : write_result_files<d>(deck, space, result, folder)) {
+    for (const auto& file : write_result_files<d>(deck, space, result, certificate, folder)) {
         summary.files.push_back(file.string());
     }
     add_phase("output", timer.seconds());
@@ -65,6 +66,7 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     summary.title = deck.title;
     summary.units = deck.units.name();
     summary.signature = iga::signature(geometry);
+    summary.certificate = certificate;
     summary.dimension = d;
     summary.n_patches = geometry.n_patches();
     summary.n_interfaces = static_cast<int>(geometry.interfaces.size());
@@ -82,8 +84,10 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
 }
 
 template Summary run_linear<2>(const io::Deck&, const iga::MultiPatch<2>&,
-                               const std::filesystem::path&, std::vector<Phase>);
+                               const GeometryCertificate&, const std::filesystem::path&,
+                               std::vector<Phase>);
 template Summary run_linear<3>(const io::Deck&, const iga::MultiPatch<3>&,
-                               const std::filesystem::path&, std::vector<Phase>);
+                               const GeometryCertificate&, const std::filesystem::path&,
+                               std::vector<Phase>);
 
 }  // namespace couture::drivers

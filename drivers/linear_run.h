@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "drivers/deck_check.h"
 #include "drivers/summary.h"
 #include "iga/topology/multipatch.h"
 #include "io/deck.h"
@@ -15,6 +16,7 @@ namespace couture::drivers {
 /// @throws  all that make_space and solve_linear_static throw
 template <int d>
 [[nodiscard]] Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                                 const GeometryCertificate& certificate,
                                  const std::filesystem::path& folder, std::vector<Phase> phases);
 
 }  // namespace couture::drivers

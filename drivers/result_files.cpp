@@ -51,12 +51,17 @@ std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
 }  // namespace
 
 template <int d>
-std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
+std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                       const GeometryCertificate& certificate) {
     nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
                                      {"deck", deck.path.filename().string()},
                                      {"deck_hash", fnv_hash(deck.text)},
                                      {"deck_text", deck.text},
-                                     {"signature", iga::signature(geometry)}};
+                                     {"signature", iga::signature(geometry)},
+                                     {"certificate",
+                                      {{"validity", iga::to_string(certificate.validity)},
+                                       {"min_jacobian", certificate.min_jacobian},
+                                       {"patch", certificate.patch}}}};
     if (!deck.geometry.file.empty()) {
         object["geometry_file"] = deck.geometry.file.filename().string();
         object["geometry_hash"] = fnv_hash(io::read_text(deck.geometry.file));
@@ -67,9 +72,10 @@ std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry)
 template <int d>
 std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpacePtr<d>& space,
                                          const iga::LinearStaticResult<d>& result,
+                                         const GeometryCertificate& certificate,
                                          const fs::path& folder) {
     std::vector<fs::path> files;
-    const std::string origin = provenance<d>(deck, space->geometry());
+    const std::string origin = provenance<d>(deck, space->geometry(), certificate);
     for (const iga::CaseResult<d>& load_case : result.cases) {
         const std::string stem =
             deck.path.stem().string() + (load_case.name.empty() ? "" : "_" + load_case.name);
@@ -100,13 +106,15 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
     return files;
 }
 
-template std::string provenance<2>(const io::Deck&, const iga::MultiPatch<2>&);
-template std::string provenance<3>(const io::Deck&, const iga::MultiPatch<3>&);
+template std::string provenance<2>(const io::Deck&, const iga::MultiPatch<2>&,
+                                   const GeometryCertificate&);
+template std::string provenance<3>(const io::Deck&, const iga::MultiPatch<3>&,
+                                   const GeometryCertificate&);
 template std::vector<fs::path> write_result_files<2>(const io::Deck&, const iga::SpacePtr<2>&,
                                                      const iga::LinearStaticResult<2>&,
-                                                     const fs::path&);
+                                                     const GeometryCertificate&, const fs::path&);
 template std::vector<fs::path> write_result_files<3>(const io::Deck&, const iga::SpacePtr<3>&,
                                                      const iga::LinearStaticResult<3>&,
-                                                     const fs::path&);
+                                                     const GeometryCertificate&, const fs::path&);
 
 }  // namespace couture::drivers

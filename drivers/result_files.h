@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "drivers/deck_check.h"
 #include "iga/solve/linear_static.h"
 #include "io/deck.h"
 
@@ -14,10 +15,12 @@ namespace couture::drivers {
 template <int d>
 [[nodiscard]] std::vector<std::filesystem::path> write_result_files(
     const io::Deck& deck, const iga::SpacePtr<d>& space, const iga::LinearStaticResult<d>& result,
-    const std::filesystem::path& folder);
+    const GeometryCertificate& certificate, const std::filesystem::path& folder);
 
-/// Deck text and hash, program version and signature, as JSON: what every result file carries.
+/// Deck text and hash, program version, signature and certificate, as JSON: what every result file
+/// carries.
 template <int d>
-[[nodiscard]] std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry);
+[[nodiscard]] std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                                     const GeometryCertificate& certificate);
 
 }  // namespace couture::drivers

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/deck_check.h"
 #include "iga/core/timer.h"
 #include "iga/core/types.h"
 #include "iga/linalg/sparse_solver.h"
@@ -41,6 +42,7 @@ struct Summary {
     std::string title;
     std::string units;
     std::string signature;
+    GeometryCertificate certificate;
     int dimension = 3;
     int n_patches = 0;
     int n_interfaces = 0;

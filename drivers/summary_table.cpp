@@ -49,6 +49,11 @@ std::string to_table(const Summary& summary) {
         fmt::format("  patches {}, interfaces {}, elements {}, unknowns {}, {} {:.10g}\n",
                     summary.n_patches, summary.n_interfaces, summary.n_elements, summary.n_unknowns,
                     summary.dimension == 3 ? "volume" : "area", summary.volume);
+    text += fmt::format("  geometry {}, smallest det J {:.3g} (patch {})\n",
+                        summary.certificate.validity == iga::Validity::valid
+                            ? "proven free of folds"
+                            : iga::to_string(summary.certificate.validity),
+                        summary.certificate.min_jacobian, summary.certificate.patch);
     text += fmt::format("  solver {}, iterations {}, residual {:.2g}\n", summary.solver.solver,
                         summary.solver.iterations, summary.solver.residual);
     if (!summary.solver.note.empty()) {

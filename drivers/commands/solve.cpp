@@ -29,8 +29,8 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
     const io::AnyMultiPatch geometry = load_geometry(deck);
     Summary summary = std::visit(
         [&]<int d>(const iga::MultiPatch<d>& multipatch) {
-            check_deck<d>(deck, multipatch);
-            return run_linear<d>(deck, multipatch, folder,
+            const GeometryCertificate certificate = check_deck<d>(deck, multipatch);
+            return run_linear<d>(deck, multipatch, certificate, folder,
                                  {{"geometry", timer.seconds(), peak_memory()}});
         },
         geometry);

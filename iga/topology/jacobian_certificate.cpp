@@ -442,16 +442,6 @@ class ElementCheck {
     ElementResult<d> result_;
 };
 
-/// folded beats undecided beats degenerate beats valid.
-Validity worse(Validity a, Validity b) {
-    for (const Validity v : {Validity::folded, Validity::undecided, Validity::degenerate}) {
-        if (a == v || b == v) {
-            return v;
-        }
-    }
-    return Validity::valid;
-}
-
 template <int d>
 std::array<int, d> element_indices(const BezierPatch<d>& patch, int i_element) {
     std::array<int, d> result;
@@ -497,7 +487,7 @@ PatchCertificate<d> certify(const Patch<d>& patch, int max_depth) {
         const std::array<int, d> element = element_indices(bezier, e);
         const bool is_reversed = result.orientation != certificate.orientation;
         certificate.validity =
-            worse(certificate.validity, is_reversed ? Validity::folded : result.validity);
+            std::max(certificate.validity, is_reversed ? Validity::folded : result.validity);
         // From the element's [0, 1]^d and scaled coordinates to the patch's.
         double scale = std::pow(bezier.size, d);
         for (int k = 0; k < d; ++k) {

@@ -7,11 +7,12 @@
 
 namespace couture::iga {
 
+/// From the best to the worst.
 enum class Validity {
     valid,       ///< det J has one sign everywhere (proven)
     degenerate,  ///< zero on collapsed sides, arcs or corners, one sign elsewhere (proven)
-    folded,      ///< det J changes sign (a point is shown)
-    undecided    ///< neither was proven after the last subdivision
+    undecided,   ///< neither was proven after the last subdivision
+    folded       ///< det J changes sign (a point is shown)
 };
 
 /// What is known of det J of one patch. `orientation` is +1, or -1 for a left-handed patch;
