@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "iga/core/types.h"
+#include "iga/assembly/geometry_grid.h"
 
 namespace couture::iga {
 
@@ -19,6 +19,14 @@ struct BilinearForm {
     /// Fills A, [a][b][s][t], n_components^2 (d + 1)^2 numbers, cleared before.
     /// @param x  position (z = 0 in the plane)
     std::function<void(int patch, const Vector3& x, double* A)> coefficients;
+    /// If set, asked instead of `coefficients` (A depends on a field): fills A,
+    /// [point][a][b][s][t], of a plane of quadrature points, cleared before; several planes at once
+    /// from several threads.
+    std::function<void(int patch, const GeometryGrid<d>& grid, int i_plane,
+                       const GeometryPlane<d>& plane, double* A)>
+        plane_coefficients;
+
+    [[nodiscard]] bool is_constant() const { return !varies && !plane_coefficients; }
 
     [[nodiscard]] int size() const { return n_components * n_components * (d + 1) * (d + 1); }
 };

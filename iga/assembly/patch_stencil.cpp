@@ -32,6 +32,7 @@ struct PatchIntegrator<d>::Workspace {
     Buffer<double> row;
     /// Values of A's entries at four points.
     std::vector<Vector4d> values;
+    /// Values of A at all points of the plane, if it is not constant.
     std::vector<double> A;
 };
 
@@ -68,7 +69,7 @@ PatchIntegrator<d>::PatchIntegrator(int i_patch, const Patch<d>& geometry,
     grid_.evaluate(0, plane);
     orientation_ = plane.determinant[0] < 0.0 ? -1.0 : 1.0;
     std::vector<double> A(form.size(), 0.0);
-    if (!form.varies) {
+    if (form.is_constant()) {
         form.coefficients(i_patch_, Vector3::Zero(), A.data());
     }
     const int nc = form.n_components;
@@ -78,7 +79,7 @@ PatchIntegrator<d>::PatchIntegrator(int i_patch, const Patch<d>& geometry,
             for (int s = 0; s < n_slots; ++s) {
                 for (int t = 0; t < n_slots; ++t) {
                     const double value = A[((a * nc + b) * (d + 1) + s) * (d + 1) + t];
-                    if (form.varies || value != 0.0) {
+                    if (!form.is_constant() || value != 0.0) {
                         entries_.push_back({a, b, s, t, value});
                     }
                 }
@@ -137,17 +138,12 @@ void PatchIntegrator<d>::transform_coefficients(int slot, Workspace& workspace) 
                 weighted[s][k] = factor * T[s][k];
             }
         }
-        if (form_.varies) {
-            for (int q = 0; q < n_here; ++q) {
-                const double* x = &plane.x[3 * static_cast<std::size_t>(first + q)];
-                std::fill(workspace.A.begin(), workspace.A.end(), 0.0);
-                form_.coefficients(i_patch_, Vector3(x[0], x[1], x[2]), workspace.A.data());
-                for (std::size_t e = 0; e < entries_.size(); ++e) {
-                    const Entry& entry = entries_[e];
-                    workspace.values[e][q] =
-                        workspace
-                            .A[((entry.a * nc + entry.b) * (d + 1) + entry.s) * (d + 1) + entry.t];
-                }
+        for (int q = 0; q < n_here && !form_.is_constant(); ++q) {
+            const double* A = &workspace.A[static_cast<std::size_t>(first + q) * form_.size()];
+            for (std::size_t e = 0; e < entries_.size(); ++e) {
+                const Entry& entry = entries_[e];
+                workspace.values[e][q] =
+                    A[((entry.a * nc + entry.b) * (d + 1) + entry.s) * (d + 1) + entry.t];
             }
         }
         std::size_t e = 0;
@@ -193,6 +189,18 @@ void PatchIntegrator<d>::fill_coefficients(int i_plane, int slot, Workspace& wor
                 "patch {} is folded: det J = {:.6g} at parameter {}, position {}, "
                 "but of the other sign elsewhere; repair the geometry there",
                 i_patch_, det, format_point(xi), format_point(x));
+        }
+    }
+    if (!form_.is_constant()) {
+        const std::size_t size = form_.size();
+        workspace.A.assign(plane.n_points * size, 0.0);
+        if (form_.plane_coefficients) {
+            form_.plane_coefficients(i_patch_, grid_, i_plane, plane, workspace.A.data());
+        } else {
+            for (int q = 0; q < plane.n_points; ++q) {
+                const double* x = &plane.x[3 * static_cast<std::size_t>(q)];
+                form_.coefficients(i_patch_, Vector3(x[0], x[1], x[2]), &workspace.A[q * size]);
+            }
         }
     }
     if (form_.has_value) {
@@ -412,7 +420,6 @@ void PatchIntegrator<d>::integrate_with(
 
     Workspace workspace;
     workspace.coefficient_stride = d == 3 && has_value_ ? 16 : 9;
-    workspace.A.resize(form_.size());
     for (const Entry& entry : entries_) {
         workspace.values.push_back(Vector4d{} + entry.value);
     }

@@ -7,6 +7,7 @@
 
 #include "iga/core/function.h"
 #include "iga/mechanics/elastic_constants.h"
+#include "iga/mechanics/hyperelastic.h"
 
 namespace couture::iga {
 
@@ -24,6 +25,8 @@ struct Material {
     PatchList patches;
     /// Elasticity.
     ElasticStiffness stiffness = ElasticStiffness::Zero();
+    /// Finite strain; nothing: linear elasticity with `stiffness`.
+    std::optional<Hyperelastic> hyperelastic;
     /// Strain per degree along the axes.
     Vector3 thermal_expansion = Vector3::Zero();
     /// Poisson: flux = -conductivity * gradient.

@@ -8,6 +8,7 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/solve/static_system.h"
 
 namespace couture::iga {
 
@@ -24,68 +25,11 @@ auto timed(std::vector<Phase>& phases, const std::string& name, const Body& body
     return result;
 }
 
-void add_symmetric(BlockMatrix& matrix, const SparseMatrix& addition) {
-    const int n = matrix.block_size;
-    for (int column = 0; column < addition.outerSize(); ++column) {
-        for (SparseMatrix::InnerIterator it(addition, column); it; ++it) {
-            const int row_block = static_cast<int>(it.row()) / n;
-            const int column_block = column / n;
-            if (row_block > column_block) {
-                continue;
-            }
-            const auto first = matrix.columns.begin() + matrix.row_begin[row_block];
-            const auto last = matrix.columns.begin() + matrix.row_begin[row_block + 1];
-            const auto place = std::lower_bound(first, last, column_block);
-            matrix
-                .values[(place - matrix.columns.begin()) * n * n + it.row() % n * n + column % n] +=
-                it.value();
-        }
-    }
-}
-
-/// Turns rows and columns of functions with a frame of their own.
-template <int d>
-void rotate_to_frames(BlockMatrix& matrix, const Constraints<d>& constraints) {
-    if (constraints.frames.empty()) {
-        return;
-    }
-    std::vector<const Matrix<d>*> frame(matrix.n_rows, nullptr);
-    for (const auto& [dof, Q] : constraints.frames) {
-        frame[dof] = &Q;
-    }
-    using Block = Eigen::Matrix<double, d, d, Eigen::RowMajor>;
-    for (int row = 0; row < matrix.n_rows; ++row) {
-        for (std::int64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
-            Eigen::Map<Block> block(&matrix.values[e * d * d]);
-            if (frame[row] != nullptr) {
-                block = (*frame[row] * block).eval();
-            }
-            if (const Matrix<d>* Q = frame[matrix.columns[e]]; Q != nullptr) {
-                block = (block * Q->transpose()).eval();
-            }
-        }
-    }
-}
-
-/// unknowns x cases from n_dofs x components, and back.
-VectorX flatten(const MatrixX& coefficients) { return coefficients.transpose().reshaped(); }
-
-MatrixX unflatten(const VectorX& unknowns, int n_components) {
-    return unknowns.reshaped(n_components, unknowns.size() / n_components).transpose();
-}
-
 void require_finite(const MatrixX& u) {
     if (!u.allFinite()) {
         throw SolverError(
             "the solution is not finite; check materials and loads for extreme values");
     }
-}
-
-template <int d>
-Vector3 sum_of_components(const MatrixX& forces) {
-    Vector3 sum = Vector3::Zero();
-    sum.head(forces.cols()) = forces.colwise().sum().transpose();
-    return sum;
 }
 
 }  // namespace
@@ -163,28 +107,13 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
 
         const VectorX from_ground =
             foundations.nonZeros() > 0 ? VectorX(foundations * u_global) : VectorX::Zero(u.rows());
-        one.foundation_force = -sum_of_components<d>(unflatten(from_ground, nc));
+        one.foundation_force = -sum_of_components(unflatten(from_ground, nc));
         one.energy = strain_energy(problem, one.displacement, cases[c], options.n_gauss_points);
-        one.applied_force = sum_of_components<d>(loads[c]);
+        one.applied_force = sum_of_components(loads[c]);
 
-        // Reactions, each held direction to the support that holds it.
+        one.reactions = support_reactions(problem, constraints, VectorX(Ku.col(c) - f.col(c)));
         Vector3 total = Vector3::Zero();
-        for (const Support& support : problem.supports) {
-            one.reactions.try_emplace(support.on, Vector3::Zero());
-        }
-        const VectorX residual = Ku.col(c) - f.col(c);
-        for (Eigen::Index i = 0; i < residual.size(); ++i) {
-            if (constraints.is_fixed[i] == 0) {
-                continue;
-            }
-            Vector3 force = Vector3::Zero();
-            const auto frame = constraints.frames.find(static_cast<int>(i) / nc);
-            if (frame == constraints.frames.end()) {
-                force[i % nc] = residual[i];
-            } else {
-                force.head<d>() = residual[i] * frame->second.row(i % nc).transpose();
-            }
-            one.reactions[problem.supports[constraints.support[i]].on] += force;
+        for (const auto& [on, force] : one.reactions) {
             total += force;
         }
         const double scale = std::max({one.applied_force.norm(), total.norm(),
