@@ -59,6 +59,10 @@ void visit(const Space<d>& space, const PatchEntity<d>& entity, std::optional<in
         point.x.setZero();
         point.x.head(d) = x;
         point.normal.setZero();
+        point.sign = sign;
+        point.parameter_weight = weight;
+        point.tangents = MatrixX::Zero(3, e);
+        point.tangents.topRows(d) = J;
         if constexpr (e == 2) {
             const Vector3 area = Vector3(J.col(0)).cross(Vector3(J.col(1)));
             point.weight = weight * area.norm();
@@ -78,6 +82,7 @@ void visit(const Space<d>& space, const PatchEntity<d>& entity, std::optional<in
             point.dofs[i] = space.dofs(entity.patch)[on[basis.functions[i]]];
         }
         point.values = std::move(basis.values);
+        point.gradients = std::move(basis.gradients);
         body(point);
     }
 }

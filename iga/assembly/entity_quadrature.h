@@ -17,6 +17,13 @@ struct EntityPoint {
     /// Functions of the space that do not vanish here: global numbers and values.
     std::vector<int> dofs;
     VectorX values;
+    /// Quadrature weight alone, and derivatives by the parameters of a side or edge (e of them): of
+    /// the map, 3 x e, and of the functions, functions x e.
+    double parameter_weight = 1.0;
+    MatrixX tangents;
+    MatrixX gradients;
+    /// Of a side: the outward normal is sign * (t_0 x t_1), in the plane sign * (t_y, -t_x).
+    double sign = 0.0;
 };
 
 /// Visits the Gauss points of an entity of the geometry's boundary (or of its inside).

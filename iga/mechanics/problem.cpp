@@ -27,6 +27,52 @@ std::vector<std::string> Problem::load_cases() const {
     return names;
 }
 
+Problem at_time(const Problem& problem, double t, double end) {
+    const auto share = [&](const CaseEntry& entry) { return entry.follows_time ? 1.0 : t / end; };
+    const auto freeze = [&](const CaseEntry& entry, Function& value) {
+        if (value) {
+            value = [value, t, factor = share(entry)](const Vector3& x, double) {
+                return factor * value(x, t);
+            };
+        }
+    };
+    Problem now = problem;
+    for (Support& support : now.supports) {
+        for (std::optional<Function>& component : support.components) {
+            if (component) {
+                freeze(support, *component);
+            }
+        }
+        if (support.normal) {
+            freeze(support, *support.normal);
+        }
+    }
+    for (Traction& traction : now.tractions) {
+        for (Function& component : traction.components) {
+            freeze(traction, component);
+        }
+    }
+    for (Pressure& pressure : now.pressures) {
+        freeze(pressure, pressure.value);
+    }
+    for (BodyForce& force : now.body_forces) {
+        for (Function& component : force.components) {
+            freeze(force, component);
+        }
+    }
+    for (Temperature& temperature : now.temperatures) {
+        freeze(temperature, temperature.change);
+    }
+    for (PointLoad& load : now.point_loads) {
+        load.force *= share(load);
+    }
+    for (Resultant& load : now.resultants) {
+        load.force *= share(load);
+        load.moment *= share(load);
+    }
+    return now;
+}
+
 Material make_isotropic(const std::string& name, double youngs_modulus, double poissons_ratio) {
     Material material;
     material.name = name;

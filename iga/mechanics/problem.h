@@ -43,6 +43,8 @@ struct Entry {
 struct CaseEntry : Entry {
     /// Empty: acts in every case.
     std::string load_case;
+    /// Its values name t. Else, in a run over time, they grow linearly from 0 to what they are.
+    bool follows_time = false;
 };
 
 /// Prescribed displacement on a named set; for Poisson the value is component 0.
@@ -65,6 +67,8 @@ struct Traction : CaseEntry {
 struct Pressure : CaseEntry {
     std::string on;
     Function value;
+    /// At finite strain: acts on the deformed side, along its normal. Else on the undeformed one.
+    bool follows_body = true;
 };
 
 /// Force per volume; for Poisson the source is component 0.
@@ -127,6 +131,9 @@ struct Problem {
     /// Names of the load cases in order of appearance; one unnamed case if none is named.
     [[nodiscard]] std::vector<std::string> load_cases() const;
 };
+
+/// The problem with the values that it has at time t of a run from 0 to `end`.
+[[nodiscard]] Problem at_time(const Problem& problem, double t, double end);
 
 /// An isotropic elastic material for all patches. @throws InputError  as `isotropic_stiffness`
 [[nodiscard]] Material make_isotropic(const std::string& name, double youngs_modulus,

@@ -1,0 +1,159 @@
+#include "iga/solve/load_stepping.h"
+
+#include <catch2/catch.hpp>
+
+#include "iga/core/error.h"
+#include "iga/spline/refine.h"
+#include "iga/spline/shapes.h"
+
+using namespace couture;
+using namespace couture::iga;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Problem rubber(Kinematics kinematics) {
+    Problem problem;
+    problem.kinematics = kinematics;
+    problem.materials.resize(1);
+    problem.materials[0].name = "rubber";
+    problem.materials[0].hyperelastic = make_hyperelastic(StoredEnergy::neo_hookean, 3.0, 20.0);
+    return problem;
+}
+
+template <int d>
+SpacePtr<d> space_of(Patch<d> patch, int degree, const std::array<int, d>& n_elements) {
+    MultiPatch<d> part;
+    part.patches = {std::move(patch)};
+    for (int side = 0; side < 2 * d; ++side) {
+        part.boundary_sets["side_" + std::to_string(side)] = {make_side<d>(0, side)};
+    }
+    return std::make_shared<const Space<d>>(refine<d>(part, degree, n_elements));
+}
+
+template <int d>
+std::vector<AcceptedStep<d>> run(const SpacePtr<d>& space, const Problem& problem,
+                                 const SteppingOptions& options, SteppingReport& report) {
+    std::vector<AcceptedStep<d>> steps;
+    report = follow_loads<d>(space, problem, options,
+                             [&](const AcceptedStep<d>& step) { steps.push_back(step); });
+    return steps;
+}
+
+Problem stretched_block(double stretch) {
+    Problem problem = rubber(Kinematics::solid);
+    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2"), make_symmetry("side_4"),
+                        make_support("side_1", stretch - 1.0, {}, {})};
+    return problem;
+}
+
+}  // namespace
+
+TEST_CASE("follow_loads: uniaxial tension has its closed form", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 2, {2, 2, 1});
+    SteppingReport report;
+    const auto steps = run<3>(space, stretched_block(2.0), {}, report);
+    REQUIRE(report.finished);
+    const AcceptedStep<3>& last = steps.back();
+    CHECK(last.t == 1.0);
+    const Field<3> u{space, last.displacement};
+    CHECK(u.value(0, Vector3(0.3, 1.0, 0.5))[1] == Approx(0.7544020407 - 1.0).epsilon(1e-8));
+    CHECK(last.reactions.at("side_1")[0] == Approx(4.7206957265).epsilon(1e-8));
+    CHECK(last.reactions.at("side_0")[0] == Approx(-4.7206957265).epsilon(1e-8));
+}
+
+TEST_CASE("follow_loads: Newton converges quadratically", "[solve]") {
+    const SpacePtr<2> space = space_of<2>(make_quarter_annulus(1.0, 2.0), 2, {3, 3});
+    Problem problem = rubber(Kinematics::plane_strain);
+    problem.supports = {make_symmetry("side_2"), make_symmetry("side_3")};
+    problem.pressures = {make_pressure("side_0", 0.5)};
+    SteppingOptions options;
+    options.first_step = options.largest_step = 1.0;
+    options.newton.tolerance = 1e-12;
+    SteppingReport report;
+    const auto steps = run<2>(space, problem, options, report);
+    REQUIRE(report.finished);
+    const std::vector<double>& r = steps.at(0).newton.residuals;
+    REQUIRE(r.size() >= 4);
+    // |r| falls at least as its square times a constant of order one, from where it is small.
+    for (std::size_t i = 1; i + 1 < r.size(); ++i) {
+        if (r[i] < 0.1 && r[i + 1] > 1e-13) {
+            CHECK(r[i + 1] < 10.0 * r[i] * r[i]);
+        }
+    }
+    CHECK(steps.at(0).newton.iterations <= 7);
+}
+
+TEST_CASE("follow_loads: a tube inflated by follower pressure", "[solve]") {
+    const SpacePtr<2> space = space_of<2>(make_quarter_annulus(1.0, 2.0), 4, {6, 2});
+    Problem problem = rubber(Kinematics::plane_strain);
+    problem.supports = {make_symmetry("side_2"), make_symmetry("side_3")};
+    problem.pressures = {make_pressure("side_0", 0.7906356787)};
+    SteppingReport report;
+    const auto steps = run<2>(space, problem, {}, report);
+    REQUIRE(report.finished);
+    const Field<2> u{space, steps.back().displacement};
+    CHECK(u.value(0, Vector2(0.0, 0.0)).norm() == Approx(0.25).epsilon(1e-5));
+    CHECK(u.value(0, Vector2(1.0, 1.0)).norm() == Approx(0.1486155550).epsilon(1e-5));
+}
+
+TEST_CASE("follow_loads: a path without equilibrium is cut down and given up", "[solve]") {
+    // The moving face would pass through the held one.
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1});
+    Problem problem = stretched_block(-0.5);
+    SteppingOptions options;
+    options.smallest_step = 1e-3;
+    SteppingReport report;
+    const auto steps = run<3>(space, problem, options, report);
+    CHECK_FALSE(report.finished);
+    CHECK(report.n_cuts > 0);
+    REQUIRE_FALSE(steps.empty());
+    CHECK(report.t == steps.back().t);
+    // The face reaches the other side at t = 2/3.
+    CHECK(report.t < 2.0 / 3.0);
+    CHECK(report.t > 0.5);
+    CHECK_THAT(report.reason, Contains("no equilibrium at t = "));
+}
+
+TEST_CASE("follow_loads: a run goes on from a state as if it had not stopped", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 2, {1, 1, 1});
+    SteppingReport report;
+    const auto all = run<3>(space, stretched_block(1.6), {}, report);
+    REQUIRE(all.size() > 3);
+    SteppingState state{all[1].t, all[1].next_step, all[1].displacement};
+    std::vector<double> times;
+    MatrixX last;
+    const auto rest = follow_loads<3>(
+        space, stretched_block(1.6), {},
+        [&](const AcceptedStep<3>& step) {
+            times.push_back(step.t);
+            last = step.displacement;
+        },
+        state);
+    CHECK(rest.finished);
+    CHECK(times.size() == all.size() - 2);
+    CHECK(last == all.back().displacement);
+}
+
+TEST_CASE("follow_loads: what it can't take is named", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1});
+    const auto try_it = [&](const Problem& problem, const SteppingOptions& options = {}) {
+        SteppingReport report;
+        run<3>(space, problem, options, report);
+    };
+    Problem cases = stretched_block(1.1);
+    cases.supports[3].load_case = "pull";
+    CHECK_THROWS_WITH(try_it(cases), Contains("load case 'pull': hyperelastic bodies are loaded"));
+    Problem hot = stretched_block(1.1);
+    hot.temperatures.resize(1);
+    hot.temperatures[0].change = constant(1.0);
+    CHECK_THROWS_WITH(try_it(hot), Contains("have no thermal strain"));
+    Problem loose = stretched_block(1.1);
+    loose.supports.erase(loose.supports.begin() + 1);
+    CHECK_THROWS_WITH(try_it(loose), Contains("free rigid-body motions: translation along y"));
+    SteppingOptions options;
+    options.smallest_step = 1.0;
+    CHECK_THROWS_WITH(try_it(stretched_block(1.1), options),
+                      "load steps: smallest 1, first 0.1, largest 0.25; must be positive and not "
+                      "decrease");
+}
