@@ -18,6 +18,8 @@ namespace {
 /// Two directions, or two prescribed values, nearer than this (relative) are one.
 constexpr double same_direction = 1e-8;
 constexpr double same_value = 1e-6;
+/// Of values obtained on different sides, relative to the largest.
+constexpr double rounding = 1e-12;
 /// A side whose unit normals differ by more than this is curved.
 constexpr double flatness = 1e-6;
 
@@ -33,54 +35,122 @@ std::vector<int> dofs_of_set(const Space<d>& space, const BoundarySet<d>& set) {
     return dofs;
 }
 
-/// Coefficients on `dofs` of the function nearest to `value` in L2 over the set.
+double finite_value(const Function& value, const Vector3& x) {
+    const double f = value(x, 0.0);
+    if (!std::isfinite(f)) {
+        throw InputError("prescribed displacement at {} = {}; must be finite", format_point(x), f);
+    }
+    return f;
+}
+
+/// Entities of dimension k that lie on an entity, itself if that is its dimension.
 template <int d>
-VectorX project(const Space<d>& space, const BoundarySet<d>& set, const std::vector<int>& dofs,
-                const MatrixX& positions, const Function& value) {
-    const auto n = static_cast<Eigen::Index>(dofs.size());
-    const auto local = [&dofs](int dof) {
-        return static_cast<int>(std::lower_bound(dofs.begin(), dofs.end(), dof) - dofs.begin());
-    };
-    std::vector<Eigen::Triplet<double>> entries;
-    VectorX b = VectorX::Zero(n);
-    std::optional<double> first;
-    bool is_constant = true;
-    for (const PatchEntity<d>& entity : set) {
-        for_entity_points<d>(space, entity, {}, [&](const EntityPoint<d>& point) {
-            const double f = value(point.x, 0.0);
-            if (!std::isfinite(f)) {
-                throw InputError("prescribed displacement at {} = {}; must be finite",
-                                 format_point(point.x), f);
+std::vector<PatchEntity<d>> closure(const PatchEntity<d>& entity, int k) {
+    std::vector<PatchEntity<d>> result;
+    for (const PatchEntity<d>& part : entities_of_patch<d>(entity.patch, k)) {
+        bool lies_on = true;
+        for (int direction = 0; direction < d; ++direction) {
+            lies_on = lies_on && (entity.position[direction] == End::free ||
+                                  entity.position[direction] == part.position[direction]);
+        }
+        if (lies_on) {
+            result.push_back(part);
+        }
+    }
+    return result;
+}
+
+/// A function's coefficients on sets: its values at corners, then the nearest function in L2 along
+/// each edge with its ends held, then on each side with its edges held. What two sides have in
+/// common follows from there alone, so that a function is the same on both.
+template <int d>
+class Projection {
+  public:
+    Projection(const Space<d>& space, const MatrixX& positions, const Function& value)
+        : space_(space), positions_(positions), value_(value) {}
+
+    /// One coefficient for each of the set's functions, `dofs`.
+    VectorX on(const BoundarySet<d>& set, const std::vector<int>& dofs) {
+        for (int k = 0; k < d; ++k) {
+            for (const PatchEntity<d>& entity : set) {
+                if (entity.dimension() < k) {
+                    continue;
+                }
+                for (const PatchEntity<d>& part : closure(entity, k)) {
+                    add(part);
+                }
             }
-            is_constant = is_constant && f == first.value_or(f);
-            first = first.value_or(f);
+        }
+        VectorX result(dofs.size());
+        for (std::size_t i = 0; i < dofs.size(); ++i) {
+            result[static_cast<Eigen::Index>(i)] = known_.at(dofs[i]);
+        }
+        return result;
+    }
+
+  private:
+    void add(const PatchEntity<d>& entity) {
+        std::vector<int> unknown = space_.dofs_on(entity);
+        std::sort(unknown.begin(), unknown.end());
+        unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
+        std::erase_if(unknown, [this](int dof) { return known_.count(dof) != 0; });
+        if (unknown.empty()) {
+            return;
+        }
+        const auto n = static_cast<Eigen::Index>(unknown.size());
+        const auto local = [&unknown](int dof) {
+            const auto found = std::lower_bound(unknown.begin(), unknown.end(), dof);
+            return found != unknown.end() && *found == dof
+                       ? static_cast<int>(found - unknown.begin())
+                       : -1;
+        };
+        std::vector<Eigen::Triplet<double>> entries;
+        VectorX b = VectorX::Zero(n);
+        for_entity_points<d>(space_, entity, {}, [&](const EntityPoint<d>& point) {
+            double rest = finite_value(value_, point.x);
             for (std::size_t i = 0; i < point.dofs.size(); ++i) {
-                b[local(point.dofs[i])] += point.weight * f * point.values[i];
+                if (local(point.dofs[i]) < 0) {
+                    rest -= known_.at(point.dofs[i]) * point.values[i];
+                }
+            }
+            for (std::size_t i = 0; i < point.dofs.size(); ++i) {
+                const int row = local(point.dofs[i]);
+                if (row < 0) {
+                    continue;
+                }
+                b[row] += point.weight * rest * point.values[i];
                 for (std::size_t j = 0; j < point.dofs.size(); ++j) {
-                    entries.emplace_back(local(point.dofs[i]), local(point.dofs[j]),
-                                         point.weight * point.values[i] * point.values[j]);
+                    if (const int column = local(point.dofs[j]); column >= 0) {
+                        entries.emplace_back(row, column,
+                                             point.weight * point.values[i] * point.values[j]);
+                    }
                 }
             }
         });
-    }
-    if (is_constant) {
-        return VectorX::Constant(n, first.value_or(0.0));
-    }
-    SparseMatrix mass(n, n);
-    mass.setFromTriplets(entries.begin(), entries.end());
-    // Functions without area (on a collapsed side) take the value at their place.
-    const double largest = mass.diagonal().maxCoeff();
-    for (Eigen::Index i = 0; i < n; ++i) {
-        if (!(mass.coeff(i, i) > 1e-14 * largest)) {
-            mass.coeffRef(i, i) += largest;
-            b[i] = largest * value(positions.row(dofs[i]).transpose(), 0.0);
+        SparseMatrix mass(n, n);
+        mass.setFromTriplets(entries.begin(), entries.end());
+        // Functions without area (on a collapsed side) take the value at their place.
+        const double largest = mass.diagonal().maxCoeff();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (!(mass.coeff(i, i) > 1e-14 * largest)) {
+                mass.coeffRef(i, i) += largest > 0.0 ? largest : 1.0;
+                b[i] =
+                    mass.coeff(i, i) * finite_value(value_, positions_.row(unknown[i]).transpose());
+            }
+        }
+        const Eigen::SimplicialLDLT<SparseMatrix> factor(mass);
+        VectorX x = factor.solve(b);
+        x += factor.solve(b - mass * x);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            known_[unknown[i]] = x[i];
         }
     }
-    const Eigen::SimplicialLDLT<SparseMatrix> factor(mass);
-    VectorX x = factor.solve(b);
-    x += factor.solve(b - mass * x);
-    return x;
-}
+
+    const Space<d>& space_;
+    const MatrixX& positions_;
+    const Function& value_;
+    std::map<int, double> known_;
+};
 
 /// The normal of a plane side.
 template <int d>
@@ -198,6 +268,7 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
     const auto n_cases = static_cast<Eigen::Index>(load_cases.size());
     const MatrixX positions = dof_positions(space);
     std::map<int, std::vector<HeldDirection<d>>> held;
+    double largest_value = 0.0;
 
     const auto hold = [&](int dof, const Vector<d>& direction, int i_support,
                           const VectorX& values) {
@@ -218,7 +289,7 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
         for (const HeldDirection<d>& other : here) {
             scale = std::max(scale, other.values.cwiseAbs().maxCoeff());
         }
-        if (value.cwiseAbs().maxCoeff() > same_value * scale) {
+        if (value.cwiseAbs().maxCoeff() > same_value * scale + rounding * largest_value) {
             const Support& support = problem.supports[i_support];
             throw InputError(
                 "{}displacement on '{}' contradicts the one on '{}' at {}: they differ "
@@ -235,7 +306,8 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
         const auto apply = [&](const BoundarySet<d>& set, const Vector<d>& direction,
                                const Function& function) {
             const std::vector<int> dofs = dofs_of_set(space, set);
-            const VectorX value = project(space, set, dofs, positions, function);
+            const VectorX value = Projection<d>(space, positions, function).on(set, dofs);
+            largest_value = std::max(largest_value, value.cwiseAbs().maxCoeff());
             for (std::size_t i = 0; i < dofs.size(); ++i) {
                 VectorX values(n_cases);
                 for (Eigen::Index c = 0; c < n_cases; ++c) {

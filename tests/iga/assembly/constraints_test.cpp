@@ -86,3 +86,42 @@ TEST_CASE("make_constraints: what can't be held is named", "[assembly]") {
     CHECK_THROWS_AS(make_constraints(space, plane_strain({make_symmetry("none")}), {""}),
                     TopologyError);
 }
+
+TEST_CASE("make_constraints: one field prescribed on sides that meet is no contradiction",
+          "[assembly]") {
+    MultiPatch<3> part;
+    part.patches = {make_box<3>(Vector3(1.0, 1.0, 1.0))};
+    for (int side = 0; side < 6; ++side) {
+        part.boundary_sets["side_" + std::to_string(side)] = {make_side<3>(0, side)};
+        part.boundary_sets["outer"].push_back(make_side<3>(0, side));
+    }
+    const Space<3> space(refine<3>(part, 2, std::array<int, 3>{3, 2, 2}));
+    const auto field = [](const std::string& on) {
+        Support support = make_support(on, 0.0, 0.0, 0.0);
+        support.components[0] = [](const Vector3& x, double) { return 1e-3 * x[0]; };
+        support.components[1] = [](const Vector3& x, double) {
+            return 1e-3 * std::sin(2.0 * x[0]) * x[2];
+        };
+        return support;
+    };
+    Problem apart;
+    for (int side = 0; side < 6; ++side) {
+        apart.supports.push_back(field("side_" + std::to_string(side)));
+    }
+    Problem together;
+    together.supports = {field("outer")};
+    const auto a = make_constraints(space, apart, {""});
+    const auto b = make_constraints(space, together, {""});
+    CHECK(a.is_fixed == b.is_fixed);
+    CHECK((a.values - b.values).cwiseAbs().maxCoeff() < 1e-16);
+    // Linear functions are met exactly, also by supports that hold zero beside them.
+    const MatrixX positions = dof_positions(space);
+    for (int dof = 0; dof < space.n_dofs(); ++dof) {
+        if (a.is_fixed[3 * dof] != 0) {
+            CHECK(std::abs(a.values(3 * dof, 0) - 1e-3 * positions(dof, 0)) < 1e-17);
+        }
+    }
+    Problem beside;
+    beside.supports = {make_support("side_0", 0.0, {}, {}), field("side_2")};
+    CHECK_NOTHROW(make_constraints(space, beside, {""}));
+}
