@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "drivers/summary.h"
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
 #include "io/did_you_mean.h"
@@ -117,17 +118,22 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--tolerance", compare->tolerance, "relative difference that counts as none")
         ->check(CLI::NonNegativeNumber);
 
-    if (const auto message = unknown_command(app, argc, argv)) {
-        fmt::print(stderr, "couture: {}\n", *message);
+    const auto refuse = [&](const std::string& message) {
+        fmt::print(stderr, "couture: {}\n", message);
+        if (std::find(argv, argv + argc, std::string_view("--json")) != argv + argc) {
+            fmt::print("{}", error_json(message, ExitCode::bad_input));
+        }
         return ExitCode::bad_input;
+    };
+    if (const auto message = unknown_command(app, argc, argv)) {
+        return refuse(*message);
     }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "couture: {}; see couture --help\n", error.what());
-        return ExitCode::bad_input;
+        return refuse(fmt::format("{}; see couture --help", error.what()));
     }
     apply(command.common);
     return {};

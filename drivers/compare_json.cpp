@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 /// What a run's time and place change, not its result.
 const std::set<std::string> ignored_keys = {"phases", "peak_memory", "threads", "files",
-                                            "deck",   "program",     "memory"};
+                                            "deck",   "deck_hash",   "program", "memory"};
 /// Residuals and force balances are rounding errors: equal if both are small.
 constexpr double rounding_error = 1e-8;
 const std::set<std::string> rounding_keys = {"residual", "balance"};

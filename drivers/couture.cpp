@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <csignal>
 #include <new>
 
 #include "drivers/command_line.h"
@@ -7,10 +8,13 @@
 #include "drivers/interrupt.h"
 #include "drivers/summary.h"
 #include "iga/core/error.h"
+#include "iga/core/timer.h"
 
 namespace {
 
 using namespace couture;
+
+constexpr std::size_t least_memory = std::size_t{1} << 30U;
 
 int report(const std::string& message, int exit_code, bool json) {
     fmt::print(stderr, "couture: {}\n", message);
@@ -42,9 +46,18 @@ int run_guarded(const drivers::Command& command) {
 
 int main(int argc, char** argv) {
     drivers::exit_cleanly_on_interrupt();
+    // A write past the limit of file sizes fails with a message instead.
+    std::signal(SIGXFSZ, SIG_IGN);
     drivers::Command command;
     if (const auto exit_code = drivers::read_command_line(argc, argv, command)) {
         return *exit_code;
+    }
+    // Libraries that we stand on spin or abort where they get no memory.
+    if (available_memory() < least_memory) {
+        return report(fmt::format("{} MB of memory are free for this process, it needs {} MB to "
+                                  "start (ulimit -v, container limits)",
+                                  available_memory() >> 20U, least_memory >> 20U),
+                      drivers::ExitCode::run_failed, command.common.json);
     }
     return run_guarded(command);
 }

@@ -28,6 +28,7 @@ class DeckCheck {
         check_sets();
         check_patches();
         check_probes();
+        warn_of_points();
         if (!messages_.empty()) {
             throw InputError("{}", fmt::join(messages_, "\n"));
         }
@@ -36,6 +37,25 @@ class DeckCheck {
   private:
     void add(const std::string& source, const std::string& word, const std::string& message) {
         messages_.push_back(io::located_in(deck_, source, word, message));
+    }
+
+    /// Too few points leave motions of the elements without energy.
+    void warn_of_points() const {
+        if (!deck_.discretization.n_gauss_points) {
+            return;
+        }
+        int degree = deck_.discretization.degree.value_or(0);
+        for (const iga::Patch<d>& patch : geometry_.patches) {
+            for (int k = 0; k < d; ++k) {
+                degree = std::max(degree, patch.knots(k).degree());
+            }
+        }
+        if (*deck_.discretization.n_gauss_points <= degree) {
+            log::warn(fmt::format(
+                "gauss_points = {} of [discretization] are fewer than degree + 1 = {}: the matrix "
+                "may be singular and results less accurate",
+                *deck_.discretization.n_gauss_points, degree + 1));
+        }
     }
 
     void check_kinematics() {

@@ -4,6 +4,7 @@
 #include "drivers/job_geometry.h"
 #include "drivers/probes.h"
 #include "drivers/result_files.h"
+#include "iga/assembly/elasticity.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
@@ -49,9 +50,16 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
         phases.back().peak_memory = phase.peak_memory;
     }
 
+    for (const auto& load_case : result.cases) {
+        if (load_case.displacement.coefficients.isZero(0.0)) {
+            log::warn(fmt::format("case '{}': nothing loads the body, its displacement is zero",
+                                  case_title(load_case.name)));
+        }
+    }
+
     timer = {};
     Summary summary;
-    summary.volume = iga::volume(geometry);
+    summary.volume = iga::body_volume(deck.problem, geometry);
     // Locations stay valid: refinement keeps every patch's parameters.
     summary.probes = evaluate_probes<d>(deck, locations, result, summary.volume);
     add_phase("probes", timer.seconds());

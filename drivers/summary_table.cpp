@@ -16,13 +16,17 @@ std::string to_text(const Vector3& v) {
 
 std::string probe_lines(const std::vector<ProbeResult>& probes) {
     std::size_t width = 10;
+    const auto label = [&](const ProbeResult& probe) {
+        return probe.load_case.empty() ? probe.name
+                                       : fmt::format("{} [{}]", probe.name, probe.load_case);
+    };
     for (const ProbeResult& probe : probes) {
-        width = std::max(width, probe.name.size());
+        width = std::max(width, label(probe).size());
     }
     std::string text =
         fmt::format("  {:<{}} {:>13} {:>13}\n", "probe", width, "obtained", "expected");
     for (const ProbeResult& probe : probes) {
-        text += fmt::format("  {:<{}} {:>13.6g}", probe.name, width, probe.value);
+        text += fmt::format("  {:<{}} {:>13.6g}", label(probe), width, probe.value);
         if (probe.expected) {
             text += fmt::format(
                 " {:>13.6g}  {}", *probe.expected,
@@ -45,10 +49,9 @@ std::string case_title(const std::string& name) { return name.empty() ? "default
 
 std::string to_table(const Summary& summary) {
     std::string text = summary.title + "\n";
-    text +=
-        fmt::format("  patches {}, interfaces {}, elements {}, unknowns {}, {} {:.10g}\n",
-                    summary.n_patches, summary.n_interfaces, summary.n_elements, summary.n_unknowns,
-                    summary.dimension == 3 ? "volume" : "area", summary.volume);
+    text += fmt::format("  patches {}, interfaces {}, elements {}, unknowns {}, volume {:.10g}\n",
+                        summary.n_patches, summary.n_interfaces, summary.n_elements,
+                        summary.n_unknowns, summary.volume);
     text += fmt::format("  geometry {}, smallest det J {:.3g} (patch {})\n",
                         summary.certificate.validity == iga::Validity::valid
                             ? "proven free of folds"

@@ -15,14 +15,9 @@ iga::Support make_support(Section& section, const std::string& on) {
     return support;
 }
 
-std::vector<std::string> read_sets(Section& section) {
-    section.require("on", "the name of a boundary set, or a list of names");
-    return section.texts("on");
-}
-
 void read_displacement(Section& section, iga::Problem& problem) {
-    const std::vector<std::string> sets = read_sets(section);
-    const std::string load_case = section.text("case").value_or("");
+    const std::vector<std::string> sets = section.sets();
+    const std::string load_case = section.load_case();
     const auto components = section.components("value", dimensions::length);
     const auto normal = section.function("normal", dimensions::length);
     const bool has_component = std::any_of(components.begin(), components.end(),
@@ -56,12 +51,14 @@ void read_fixed(Section& section, iga::Problem& problem) {
                                                       direction));
         }
     }
+    section.refuse_third("directions",
+                         std::find(directions.begin(), directions.end(), "z") != directions.end());
     if (directions.empty()) {
         directions = axes;
     }
     // A plane body has no third displacement to hold.
     const bool is_solid = problem.kinematics == iga::Kinematics::solid;
-    for (const std::string& on : read_sets(section)) {
+    for (const std::string& on : section.sets()) {
         iga::Support support = make_support(section, on);
         for (std::size_t i = 0; i < (is_solid ? 3U : 2U); ++i) {
             if (std::find(directions.begin(), directions.end(), axes[i]) != directions.end()) {
@@ -82,7 +79,7 @@ void read_foundation(Section& section, iga::Problem& problem) {
                                         "(stiffness per area)",
                                         section.title()));
     }
-    for (const std::string& on : read_sets(section)) {
+    for (const std::string& on : section.sets()) {
         iga::Foundation foundation;
         foundation.source = section.place().source;
         foundation.on = on;
@@ -95,8 +92,8 @@ void read_foundation(Section& section, iga::Problem& problem) {
 void read_potential(Section& section, iga::Problem& problem) {
     section.require("value", "a number or an expression");
     const auto value = section.function("value", dimensions::temperature);
-    const std::string load_case = section.text("case").value_or("");
-    for (const std::string& on : read_sets(section)) {
+    const std::string load_case = section.load_case();
+    for (const std::string& on : section.sets()) {
         iga::Support support = make_support(section, on);
         support.load_case = load_case;
         support.components[0] = value;
@@ -113,7 +110,7 @@ void read_conditions(Section& top, iga::Problem& problem) {
         return;
     }
     for_each_entry(top, "symmetry", [&](Section& section) {
-        for (const std::string& on : read_sets(section)) {
+        for (const std::string& on : section.sets()) {
             iga::Support support = make_support(section, on);
             support.normal = constant(0.0);
             problem.supports.push_back(std::move(support));

@@ -10,13 +10,8 @@ template <typename Load>
 Load make_load(Section& section) {
     Load load;
     load.source = section.place().source;
-    load.load_case = section.text("case").value_or("");
+    load.load_case = section.load_case();
     return load;
-}
-
-std::vector<std::string> read_sets(Section& section) {
-    section.require("on", "the name of a boundary set, or a list of names");
-    return section.texts("on");
 }
 
 std::array<Function, 3> read_components(Section& section, const Dimension& dimension) {
@@ -43,6 +38,8 @@ void read_point_load(Section& section, iga::Problem& problem) {
     load.on = section.text("on").value_or("");
     section.require("force", "a list of components");
     load.force = section.vector("force", dimensions::force).value_or(Vector3::Zero());
+    section.refuse_third("force", load.force[2] != 0.0);
+    section.refuse_third("at", load.at && (*load.at)[2] != 0.0);
     if (section.has("at") == section.has("on")) {
         section.mistake("", fmt::format("{} needs either 'at' (a point) or 'on' (a set of corners)",
                                         section.title()));
@@ -71,7 +68,7 @@ void read_poisson_loads(Section& top, iga::Problem& problem) {
         auto flux = make_load<iga::Traction>(section);
         flux.components = {read_value(section, dimensions::heat_flux), constant(0.0),
                            constant(0.0)};
-        for (const std::string& on : read_sets(section)) {
+        for (const std::string& on : section.sets()) {
             flux.on = on;
             problem.tractions.push_back(flux);
         }
@@ -95,7 +92,7 @@ void read_loads(Section& top, iga::Problem& problem) {
     for_each_entry(top, "pressure", [&](Section& section) {
         auto pressure = make_load<iga::Pressure>(section);
         pressure.value = read_value(section, dimensions::pressure);
-        for (const std::string& on : read_sets(section)) {
+        for (const std::string& on : section.sets()) {
             pressure.on = on;
             problem.pressures.push_back(pressure);
         }
@@ -103,7 +100,7 @@ void read_loads(Section& top, iga::Problem& problem) {
     for_each_entry(top, "traction", [&](Section& section) {
         auto traction = make_load<iga::Traction>(section);
         traction.components = read_components(section, dimensions::pressure);
-        for (const std::string& on : read_sets(section)) {
+        for (const std::string& on : section.sets()) {
             traction.on = on;
             problem.tractions.push_back(traction);
         }

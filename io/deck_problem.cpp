@@ -19,6 +19,7 @@ void read_analysis(Section& section, iga::Problem& problem) {
     const std::string kinematics = section.choice("kinematics", names).value_or("solid");
     problem.kinematics = static_cast<iga::Kinematics>(
         std::find(names.begin(), names.end(), kinematics) - names.begin());
+    section.context().is_plane = problem.kinematics != iga::Kinematics::solid;
     problem.thickness =
         section.number("thickness", dimensions::length, positive).value_or(problem.thickness);
     const bool is_plane = problem.kinematics == iga::Kinematics::plane_strain ||
@@ -33,6 +34,10 @@ void read_analysis(Section& section, iga::Problem& problem) {
 void read_combinations(Section& top, iga::Problem& problem) {
     const std::vector<std::string> cases = problem.load_cases();
     for_each_named(top, "combination", [&](const std::string& name, Section& section) {
+        if (section.table().entries.empty()) {
+            section.mistake(
+                "", fmt::format("{} is empty; give load cases and their factors", section.title()));
+        }
         for (const auto& [load_case, node] : section.table().entries) {
             const auto factor = section.number(load_case, dimensions::none);
             if (std::find(cases.begin(), cases.end(), load_case) == cases.end()) {

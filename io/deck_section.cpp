@@ -156,6 +156,34 @@ std::optional<std::string> Section::choice(const std::string& key,
     return chosen;
 }
 
+std::vector<std::string> Section::sets() {
+    require("on", "the name of a boundary set, or a list of names");
+    std::vector<std::string> names = texts("on");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (std::find(names.begin(), names.begin() + i, names[i]) != names.begin() + i) {
+            mistake("on",
+                    fmt::format("'on' of {} names '{}' twice; once is enough", title_, names[i]));
+        }
+    }
+    return names;
+}
+
+std::string Section::load_case() {
+    const std::string name = text("case").value_or("");
+    // Results are files named after their load case.
+    const bool has_bad = std::any_of(name.begin(), name.end(), [](unsigned char c) {
+        return c == '/' || c == '\\' || std::iscntrl(c) != 0;
+    });
+    if (has_bad || (has("case") && (name.empty() || name.front() == '.'))) {
+        mistake("case",
+                fmt::format("case '{}' of {} can't name a result file; take letters, digits, "
+                            "spaces, '-' and '_'",
+                            name, title_));
+        return "";
+    }
+    return name;
+}
+
 std::vector<std::string> Section::texts(const std::string& key) {
     const TomlNode* node = find(key);
     if (node == nullptr) {
@@ -254,7 +282,16 @@ std::optional<Function> Section::to_function(const TomlNode& node, const std::st
         try {
             Expression expression(node.text);
             if (!expression.variables().empty()) {
-                return Function(std::move(expression));
+                // What goes wrong at some point later still names the place in the deck.
+                return Function([expression = std::move(expression),
+                                 where = fmt::format("{}: {}", node.place.source, name_of(key))](
+                                    const Vector3& x, double t) {
+                    try {
+                        return expression(x, t);
+                    } catch (const InputError& error) {
+                        throw InputError("{}: {}", where, error.what());
+                    }
+                });
             }
         } catch (const InputError& error) {
             context_->mistakes.add(node.place, fmt::format("{}: {}", name_of(key), error.what()));
@@ -283,6 +320,7 @@ std::array<std::optional<Function>, 3> Section::components(const std::string& ke
         }
     }
     if (list == nullptr) {
+        refuse_third("z", result[2].has_value());
         return result;
     }
     const std::size_t size = list->items.size();
@@ -293,7 +331,20 @@ std::array<std::optional<Function>, 3> Section::components(const std::string& ke
     for (std::size_t i = 0; i < size; ++i) {
         result[i] = to_function(list->items[i], key, dimension);
     }
+    if (context_->is_plane && size == 3 && list->items[2].number == 0.0 &&
+        list->items[2].is_number()) {
+        result[2].reset();
+    }
+    refuse_third(key, result[2].has_value());
     return result;
+}
+
+void Section::refuse_third(const std::string& key, bool is_given) {
+    if (context_->is_plane && is_given) {
+        mistake(key,
+                fmt::format("{} has a z component; a plane body has x and y only, leave it out",
+                            title_));
+    }
 }
 
 std::optional<Vector3> Section::vector(const std::string& key, const Dimension& dimension) {

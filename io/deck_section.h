@@ -42,6 +42,8 @@ constexpr Range not_negative{.low = 0.0};
 struct DeckContext {
     Mistakes mistakes;
     UnitSystem units;
+    /// Displacements have no z.
+    bool is_plane = false;
 };
 
 /// One table of a deck while it is read. Every reader notes the key as known; `finish` reports the
@@ -71,6 +73,10 @@ class Section {
                                                     const std::vector<std::string>& names);
     /// One text or a list of texts.
     [[nodiscard]] std::vector<std::string> texts(const std::string& key);
+    /// The names under 'on', which must be there, each once.
+    [[nodiscard]] std::vector<std::string> sets();
+    /// The name under 'case', or "".
+    [[nodiscard]] std::string load_case();
     /// One whole number or a list of them, each at least `low`.
     [[nodiscard]] std::vector<int> integers(const std::string& key, int low);
     /// A number, a text with a unit, or a constant expression.
@@ -88,6 +94,9 @@ class Section {
                                                                     const Dimension& dimension);
     /// Three numbers (two: the third is 0).
     [[nodiscard]] std::optional<Vector3> vector(const std::string& key, const Dimension& dimension);
+
+    /// Notes a mistake if the body is plane and `key` says something of z.
+    void refuse_third(const std::string& key, bool is_given);
 
     /// Notes a mistake at a key, or at the section if the key is missing.
     void mistake(const std::string& key, const std::string& message);

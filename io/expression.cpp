@@ -3,6 +3,7 @@
 #include <muParser.h>
 
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -84,6 +85,40 @@ std::size_t find_assignment(const std::string& text) {
     return std::string::npos;
 }
 
+/// Longer texts are no formulas, and would overflow the parser's recursion.
+constexpr std::size_t max_length = 10'000;
+constexpr int max_depth = 100;
+
+/// Refuses what the parser takes without a word but nobody means: a comma outside of a function's
+/// parentheses, whose left side would be dropped ("1,5" is not 1.5).
+void check_structure(const std::string& text) {
+    if (text.size() > max_length) {
+        throw InputError("expression: it has {} characters; at most {} are read", text.size(),
+                         max_length);
+    }
+    std::vector<bool> is_call;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '(') {
+            const std::size_t before =
+                i == 0 ? std::string::npos : text.find_last_not_of(' ', i - 1);
+            is_call.push_back(before != std::string::npos &&
+                              (std::isalnum(static_cast<unsigned char>(text[before])) != 0 ||
+                               text[before] == '_'));
+            if (is_call.size() > max_depth) {
+                throw InputError("expression: more than {} parentheses inside each other",
+                                 max_depth);
+            }
+        } else if (text[i] == ')' && !is_call.empty()) {
+            is_call.pop_back();
+        } else if (text[i] == ',' && (is_call.empty() || !is_call.back())) {
+            throw InputError(
+                "expression: a comma stands between the arguments of a function only; decimals are "
+                "written with a point, as 1.5\n        {}\n        {}^",
+                text, std::string(i, ' '));
+        }
+    }
+}
+
 std::atomic<std::uint64_t> n_expressions = 0;
 
 }  // namespace
@@ -92,13 +127,14 @@ Expression::Expression(const std::string& text) {
     if (text.find_first_not_of(' ') == std::string::npos) {
         throw InputError("expression: the text is empty; give a number or an expression");
     }
+    check_structure(text);
     if (const std::size_t place = find_assignment(text); place != std::string::npos) {
         throw InputError("expression: '=' assigns; compare with '=='\n        {}\n        {}^",
                          text, std::string(place, ' '));
     }
     source_ = std::make_shared<const Source>(Source{text, n_expressions++});
-    Evaluator evaluator(text);
     try {
+        Evaluator evaluator(text);
         // First: GetUsedVar takes an unknown name for a variable.
         static_cast<void>(evaluator.parser.Eval());
         for (const auto& [name, address] : evaluator.parser.GetUsedVar()) {

@@ -128,16 +128,16 @@ std::string patch_line(std::size_t number, const Json& patch) {
     return line + "\n";
 }
 
-/// "folded patches: 5, 8\n", or nothing if no patch is so.
+/// "folded: patch 5, patch 8\n", or nothing if no patch is so.
 template <typename Condition>
 std::string patch_list(const Json& patches, const char* what, const Condition& is_so) {
-    std::vector<std::size_t> numbers;
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < patches.size(); ++i) {
         if (patches[i].contains("validity") && is_so(patches[i])) {
-            numbers.push_back(i);
+            names.push_back(fmt::format("patch {}", i));
         }
     }
-    return numbers.empty() ? "" : fmt::format("{} patches: {}\n", what, fmt::join(numbers, ", "));
+    return names.empty() ? "" : fmt::format("{}: {}\n", what, fmt::join(names, ", "));
 }
 
 }  // namespace

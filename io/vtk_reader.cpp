@@ -4,18 +4,15 @@
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
-#include <vtkLogger.h>
 #include <vtkNew.h>
-#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
-#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
-#include <vtkStringOutputWindow.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
+#include "io/vtk_messages.h"
 
 namespace couture::io {
 
@@ -42,38 +39,6 @@ std::vector<NamedRows> arrays_of(vtkFieldData& data) {
     return arrays;
 }
 
-/// Takes what VTK would print of errors while it lives; several of its objects report no other way.
-class CapturedMessages {
-  public:
-    CapturedMessages() : previous_(vtkOutputWindow::GetInstance()) {
-        vtkOutputWindow::SetInstance(window_);
-        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-    }
-    ~CapturedMessages() {
-        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_INFO);
-        vtkOutputWindow::SetInstance(previous_);
-    }
-    CapturedMessages(const CapturedMessages&) = delete;
-    CapturedMessages& operator=(const CapturedMessages&) = delete;
-
-    [[nodiscard]] std::string text() { return window_->GetOutput(); }
-
-  private:
-    vtkSmartPointer<vtkOutputWindow> previous_;
-    vtkNew<vtkStringOutputWindow> window_;
-};
-
-/// The first message without the place in VTK's sources: "ERROR: In F, line N\nCLASS (ADDRESS):
-/// ...".
-std::string first_sentence(const std::string& messages) {
-    const std::size_t start = messages.find("): ");
-    if (start == std::string::npos) {
-        return "nothing";
-    }
-    const std::string text = messages.substr(start + 3, messages.find("\n\n", start) - start - 3);
-    return text.substr(0, text.find_last_not_of(" \n\t.") + 1);
-}
-
 }  // namespace
 
 VtuMesh read_vtu(const std::filesystem::path& path) {
@@ -82,13 +47,13 @@ VtuMesh read_vtu(const std::filesystem::path& path) {
         beginning.find("UnstructuredGrid") == std::string::npos) {
         throw FileError("{}: not a VTK XML file of an unstructured grid (.vtu)", path.string());
     }
-    CapturedMessages messages;
+    VtkMessages messages;
     vtkNew<vtkXMLUnstructuredGridReader> reader;
     reader->SetFileName(path.c_str());
     reader->Update();
-    if (!messages.text().empty() || reader->GetErrorCode() != 0) {
+    if (messages.has_any() || reader->GetErrorCode() != 0) {
         throw FileError("{}: can't be read as VTK XML, perhaps it was cut off; VTK says: {}",
-                        path.string(), first_sentence(messages.text()));
+                        path.string(), messages.first());
     }
 
     vtkUnstructuredGrid& grid = *reader->GetOutput();

@@ -26,6 +26,7 @@
 #include "iga/spline/refine.h"
 #include "io/atomic_file.h"
 #include "io/sample_matrix.h"
+#include "io/vtk_messages.h"
 
 namespace couture::io {
 
@@ -268,6 +269,7 @@ void save(const std::filesystem::path& path, vtkUnstructuredGrid& grid,
         if (!std::ofstream(temporary)) {
             throw FileError("{}: can't be written: {}", path.string(), std::strerror(errno));
         }
+        const VtkMessages messages;
         vtkNew<vtkXMLUnstructuredGridWriter> writer;
         writer->SetFileName(temporary.c_str());
         writer->SetInputData(&grid);
@@ -276,8 +278,11 @@ void save(const std::filesystem::path& path, vtkUnstructuredGrid& grid,
         writer->SetCompressorTypeToZLib();
         writer->SetHeaderTypeToUInt64();
         if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
+            const unsigned long code = writer->GetErrorCode();
             throw FileError("{}: can't be written: {}", path.string(),
-                            vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
+                            code != vtkErrorCode::NoError
+                                ? vtkErrorCode::GetStringFromErrorCode(code)
+                                : messages.first());
         }
     });
 }

@@ -7,6 +7,7 @@
 #include "drivers/job_geometry.h"
 #include "drivers/probes.h"
 #include "iga/assembly/constraints.h"
+#include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 
@@ -40,6 +41,11 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     static_cast<void>(locate_probes<d>(deck, geometry));
     const auto space = make_space<d>(deck, geometry);
     check_held<d>(deck, *space);
+    // Expressions are asked for at every place where a run needs them.
+    for (const std::string& load_case : deck.problem.load_cases()) {
+        static_cast<void>(iga::assemble_loads<d>(*space, deck.problem, load_case,
+                                                 deck.discretization.n_gauss_points));
+    }
     const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
     const int n_unknowns = n_components * space->n_dofs();
     if (common.json) {

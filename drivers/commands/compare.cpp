@@ -75,9 +75,17 @@ Differences find_differences(const CompareOptions& options) {
                                                io::read_vtu(options.second), options.tolerance);
         return {std::move(comparison.differences), std::move(comparison.provenance)};
     }
-    return {compare_json(read_comparable(options.first), read_comparable(options.second),
-                         options.tolerance),
-            {}};
+    const Json first = read_comparable(options.first);
+    const Json second = read_comparable(options.second);
+    Differences differences{compare_json(first, second, options.tolerance), {}};
+    const auto hash_of = [](const Json& summary) {
+        return summary.is_object() ? summary.value("deck_hash", "") : "";
+    };
+    if (hash_of(first) != hash_of(second)) {
+        differences.provenance.push_back(
+            fmt::format("deck_hash: {}, {}", hash_of(first), hash_of(second)));
+    }
+    return differences;
 }
 
 void print_limited(const std::vector<std::string>& lines, const std::string& prefix) {
@@ -92,6 +100,9 @@ void print_limited(const std::vector<std::string>& lines, const std::string& pre
 }  // namespace
 
 int run_compare(const CompareOptions& options, const CommonOptions& common) {
+    if (!(options.tolerance >= 0.0)) {
+        throw InputError("--tolerance is {}; must be a number >= 0", options.tolerance);
+    }
     const Differences differences = find_differences(options);
     const std::string status = differences.values.empty() ? "equal" : "different";
     if (common.json) {

@@ -104,6 +104,32 @@ Vector<6> total_strain(Kinematics kinematics, const Vector3& x, const MatrixX& g
 }
 
 template <int d>
+double body_volume(const Problem& problem, const MultiPatch<d>& geometry) {
+    if (problem.kinematics != Kinematics::axisymmetric) {
+        return volume(geometry) * (d == 2 ? problem.thickness : 1.0);
+    }
+    double sum = 0.0;
+    for (const Patch<d>& patch : geometry.patches) {
+        std::array<int, d> n_points;
+        for (int k = 0; k < d; ++k) {
+            // x det J has degree 3 p - 1; rational maps by points enough.
+            n_points[k] = patch.is_rational() ? 12 : (3 * patch.knots(k).degree() + 1) / 2;
+        }
+        const GeometryGrid<d> grid(patch, patch.space(), n_points);
+        GeometryPlane<d> plane;
+        for (int i = 0; i < grid.n_planes(); ++i) {
+            grid.evaluate(i, plane);
+            for (int q = 0; q < plane.n_points; ++q) {
+                const Vector3 x(plane.x[3 * q], plane.x[3 * q + 1], plane.x[3 * q + 2]);
+                sum += plane.quadrature_weight[q] * std::abs(plane.determinant[q]) *
+                       measure(problem.kinematics, problem.thickness, x);
+            }
+        }
+    }
+    return sum;
+}
+
+template <int d>
 double strain_energy(const Problem& problem, const Field<d>& displacement,
                      const std::string& load_case, std::optional<int> n_gauss_points) {
     const Space<d>& space = *displacement.space;
@@ -144,6 +170,7 @@ double strain_energy(const Problem& problem, const Field<d>& displacement,
 #define COUTURE_INSTANTIATE(d)                                                               \
     template BilinearForm<d> stiffness_form(const Problem&, int);                            \
     template Vector<6> elastic_stress<d>(const Problem&, const Material&, const Vector<6>&); \
+    template double body_volume(const Problem&, const MultiPatch<d>&);                       \
     template double strain_energy(const Problem&, const Field<d>&, const std::string&,       \
                                   std::optional<int>);                                       \
     template Vector<6> total_strain<d>(Kinematics, const Vector3&, const MatrixX&, const VectorX&);

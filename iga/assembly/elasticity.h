@@ -39,6 +39,11 @@ template <int d>
 [[nodiscard]] Vector<6> total_strain(Kinematics kinematics, const Vector3& x,
                                      const MatrixX& gradient, const VectorX& value);
 
+/// Volume of the body that a geometry stands for: areas times the thickness, of axisymmetric ones
+/// the full ring.
+template <int d>
+[[nodiscard]] double body_volume(const Problem& problem, const MultiPatch<d>& geometry);
+
 /// Half the integral of stress : elastic strain (Poisson: of conductivity |grad u|^2), by the
 /// rule of the assembly.
 template <int d>

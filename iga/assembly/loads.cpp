@@ -276,14 +276,23 @@ SparseMatrix assemble_foundations(const Space<d>& space, const Problem& problem,
         }
         for (const PatchEntity<d>& entity : set) {
             for_entity_points<d>(space, entity, n_gauss_points, [&](const EntityPoint<d>& point) {
+                const auto value_of = [&](const Function& function) {
+                    const double value = function(point.x, 0.0);
+                    if (!(value >= 0.0)) {
+                        throw InputError(
+                            "{}foundation on '{}': its stiffness is {:g} at {}; must be at least 0",
+                            prefix(foundation), foundation.on, value, format_point(point.x));
+                    }
+                    return value;
+                };
                 Matrix<3> stiffness = Matrix<3>::Zero();
                 if (foundation.normal) {
-                    stiffness += (*foundation.normal)(point.x, 0.0) * point.normal *
-                                 point.normal.transpose();
+                    stiffness +=
+                        value_of(*foundation.normal) * point.normal * point.normal.transpose();
                 }
                 for (int a = 0; a < 3; ++a) {
                     if (foundation.components[a]) {
-                        stiffness(a, a) += (*foundation.components[a])(point.x, 0.0);
+                        stiffness(a, a) += value_of(*foundation.components[a]);
                     }
                 }
                 const double weight =

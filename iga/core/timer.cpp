@@ -1,6 +1,7 @@
 #include "iga/core/timer.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -41,8 +42,23 @@ std::size_t cgroup_available() {
     return std::numeric_limits<std::size_t>::max();
 }
 
+/// What `ulimit -v` leaves.
+std::size_t process_available() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+        return std::numeric_limits<std::size_t>::max();
+    }
+    std::ifstream file("/proc/self/statm");
+    std::size_t pages = 0;
+    file >> pages;
+    const std::size_t used = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+}
+
 }  // namespace
 
-std::size_t available_memory() { return std::min(machine_available(), cgroup_available()); }
+std::size_t available_memory() {
+    return std::min({machine_available(), cgroup_available(), process_available()});
+}
 
 }  // namespace couture

@@ -113,11 +113,12 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
 
         one.reactions = support_reactions(problem, constraints, VectorX(Ku.col(c) - f.col(c)));
         Vector3 total = Vector3::Zero();
+        double scale = std::max(
+            {one.applied_force.norm(), one.foundation_force.norm(), f.col(c).norm(), 1e-300});
         for (const auto& [on, force] : one.reactions) {
             total += force;
+            scale = std::max(scale, force.norm());
         }
-        const double scale = std::max({one.applied_force.norm(), total.norm(),
-                                       one.foundation_force.norm(), f.col(c).norm(), 1e-300});
         Vector3 imbalance = one.applied_force + total + one.foundation_force;
         if (problem.kinematics == Kinematics::axisymmetric) {
             imbalance[0] = 0.0;  // hoop stress carries radial loads

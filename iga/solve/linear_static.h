@@ -27,7 +27,7 @@ struct CaseResult {
     /// Sum of external forces (loads) and of reactions of each support set, 3 components.
     Vector3 applied_force = Vector3::Zero();
     std::map<std::string, Vector3> reactions;
-    /// |applied + reactions + foundation| / max(|applied|, |reactions|).
+    /// |applied + reactions + foundation| over the largest of them.
     double balance = 0.0;
     /// Force of the foundations on the body.
     Vector3 foundation_force = Vector3::Zero();

@@ -240,6 +240,27 @@ std::string warning(const Match<d>& match, double max_distance, double size) {
         to_string(match.interface), match.gap.distance, match.gap.distance / size);
 }
 
+/// A patch all of whose sides meet one other patch lies on it: bodies have no such neighbours
+/// (closed surfaces in space may).
+template <int d>
+void refuse_repeated_patches(const MultiPatch<d>& multipatch, const Partners<d>& partners) {
+    for (int p = 0; p < multipatch.n_patches() && multipatch.dimension() == d; ++p) {
+        const std::optional<PatchEntity<d>>& first = partners.of(p, 0);
+        bool lies_on_other = first && first->patch != p;
+        for (int side = 1; side < n_sides<d> && lies_on_other; ++side) {
+            const std::optional<PatchEntity<d>>& other = partners.of(p, side);
+            lies_on_other = other && other->patch == first->patch;
+        }
+        if (lies_on_other) {
+            throw TopologyError(
+                "find_interfaces: all sides of patch {} coincide with those of patch {}: one lies "
+                "on "
+                "the other; remove it",
+                p, first->patch);
+        }
+    }
+}
+
 }  // namespace
 
 template <int d>
@@ -284,6 +305,7 @@ std::vector<std::string> find_interfaces(MultiPatch<d>& multipatch, double toler
             }
         }
     }
+    refuse_repeated_patches(multipatch, partners);
     const auto order = [](const Interface<d>& a, const Interface<d>& b) {
         return std::pair(a.first_patch, a.first_side) < std::pair(b.first_patch, b.first_side);
     };

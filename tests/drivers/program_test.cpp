@@ -86,6 +86,54 @@ TEST_CASE("couture solve: results that can't be written end with 2 before the ru
     CHECK(result.errors.find("solving for") == std::string::npos);
 }
 
+TEST_CASE("couture solve: a disk that is full ends with 2 and leaves nothing half-written",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    // Blocks of 512 bytes: less than the field takes.
+    const auto result = run_couture("solve --out results " + bar, folder.path(), "ulimit -f 8");
+    CHECK(result.exit_code == 2);
+    CHECK(result.errors.find(".vtu: can't be written: ") != std::string::npos);
+    CHECK(result.errors.find("vtk") == std::string::npos);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "results")) {
+        FAIL(entry.path());
+    }
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("couture: too little memory to start is said", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto result = run_couture("solve --json " + bar, folder.path(), "ulimit -v 900000");
+    CHECK(result.exit_code == 1);
+    CHECK(result.errors.find("MB of memory are free for this process, it needs 1024 MB") !=
+          std::string::npos);
+    CHECK(Json::parse(result.output)["status"] == "failed");
+}
+#endif
+
+TEST_CASE("couture: an expression that is not finite is found by check, with its place",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "pole.toml",
+                   "title = \"p\"\n[geometry]\npart = \"box\"\n[material.any]\nyoungs_modulus = "
+                   "1e5\npoissons_ratio = 0.3\n[[fixed]]\non = \"x_low\"\n[[traction]]\non = "
+                   "\"x_high\"\nx = \"1/(x-1)\"\n");
+    const auto result = run_couture("check pole.toml", folder.path());
+    CHECK(result.exit_code == 2);
+    CHECK(result.errors.find("pole.toml:11: 'x' of [[traction]]: expression '1/(x-1)': is ") !=
+          std::string::npos);
+}
+
+TEST_CASE("couture solve: a body that nothing loads is warned of", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "idle.toml",
+                   "title = \"p\"\n[geometry]\npart = \"box\"\n[material.any]\nyoungs_modulus = "
+                   "1e5\npoissons_ratio = 0.3\n[[fixed]]\non = \"x_low\"\n[output]\nvtu = false\n");
+    const auto result = run_couture("solve --json idle.toml", folder.path());
+    CHECK(result.exit_code == 0);
+    CHECK(Json::parse(result.output)["warnings"].at(0) ==
+          "case 'default': nothing loads the body, its displacement is zero");
+}
+
 TEST_CASE("couture check: folds that no quadrature point sees are warned of", "[drivers]") {
     const TemporaryFolder folder;
     // The corner (1, 1) is pulled to where det J is barely negative there.
@@ -127,6 +175,8 @@ TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {
     const std::string compare = "compare a/solve_bar.json ";
     CHECK(run_couture(compare + "b/solve_bar.json", folder.path()).output ==
           "equal within 1e-09\n");
+    const auto no_number = run_couture(compare + "b/solve_bar.json --tolerance nan", folder.path());
+    CHECK(no_number.exit_code == 2);
     const auto different = run_couture(compare + "c/solve_bar.json", folder.path());
     CHECK(different.exit_code == 1);
     CHECK(different.output.find("unknowns: 162") != std::string::npos);

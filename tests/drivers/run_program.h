@@ -12,8 +12,11 @@ struct ProgramResult {
 };
 
 /// Runs the program with these arguments (as in a shell) in `folder`.
+///
+/// @param before  a shell command to run first, such as "ulimit -f 4"
 [[nodiscard]] ProgramResult run_couture(const std::string& arguments,
-                                        const std::filesystem::path& folder);
+                                        const std::filesystem::path& folder,
+                                        const std::string& before = "true");
 
 /// An empty folder that is removed at the end of its life.
 class TemporaryFolder {

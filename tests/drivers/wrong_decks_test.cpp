@@ -245,3 +245,49 @@ TEST_CASE("deck: overrides change values and are named in messages", "[drivers]"
     CHECK(deck.title == "Other");
     CHECK(deck.text == good_deck + "\n# --set title=Other");
 }
+
+namespace {
+
+/// A plane body with one more section, which starts in line 9.
+std::string plane_deck(const std::string& section) {
+    return R"(title = "Plane"
+[geometry]
+part = "rectangle"
+[analysis]
+kinematics = "plane_strain"
+[material.steel]
+youngs_modulus = 210e3
+poissons_ratio = 0.3
+)" + section;
+}
+
+}  // namespace
+
+TEST_CASE("deck: a plane body has no third component", "[drivers]") {
+    const std::string rule = "has a z component; a plane body has x and y only, leave it out";
+    for (const std::string section :
+         {"[[traction]]\non = \"y_high\"\nz = 7\n", "[[body_force]]\nvalue = [0, 0, 7]\n",
+          "[[displacement]]\non = \"y_high\"\nz = 7\n",
+          "[[point_load]]\nat = [1, 1]\nforce = [0, 0, 5]\n",
+          "[[fixed]]\non = \"x_low\"\ndirections = [\"x\", \"z\"]\n",
+          "[[foundation]]\non = \"x_low\"\nvalue = [1, 1, 1]\n"}) {
+        CAPTURE(section);
+        CHECK_THAT(error_of(plane_deck(section)),
+                   Catch::Contains("bracket.toml:") && Catch::Contains(rule));
+    }
+    CHECK(error_of(plane_deck("[[body_force]]\nvalue = [0, 7, 0]\n")) == "no error");
+}
+
+TEST_CASE("deck: names that are given twice, can't name a file, or hold nothing", "[drivers]") {
+    CHECK(error_of(replaced("on = \"x_high\"", "on = [\"x_high\", \"x_high\"]")) ==
+          "bracket.toml:12: 'on' of [[pressure]] names 'x_high' twice; once is enough\n"
+          "   12 | on = [\"x_high\", \"x_high\"]\n"
+          "      |      ^~~~~~~~~~~~~~~~~~~~");
+    CHECK_THAT(error_of(replaced("value = 1.0", "value = 1.0\ncase = \"a/../b\"")),
+               Catch::Contains("case 'a/../b' of [[pressure]] can't name a result file"));
+    CHECK_THAT(error_of(replaced("[[output.probe]]", "[combination.all]\n[[output.probe]]")),
+               Catch::Contains("[combination.all] is empty; give load cases and their factors"));
+    CHECK_THAT(error_of(replaced("1.0", "\"1,5\"")),
+               Catch::Contains("bracket.toml:13:") &&
+                   Catch::Contains("decimals are written with a point"));
+}

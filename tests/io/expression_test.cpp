@@ -45,6 +45,19 @@ TEST_CASE("Expression: mistakes are shown with a caret", "[io]") {
                       "expression: '=' assigns; compare with '=='\n        x = 3\n          ^");
     CHECK_THROWS_WITH(Expression("  "),
                       "expression: the text is empty; give a number or an expression");
+    CHECK_THROWS_WITH(Expression("1,5 * x"),
+                      "expression: a comma stands between the arguments of a function only; "
+                      "decimals are written with a point, as 1.5\n        1,5 * x\n         ^");
+    CHECK_THROWS_WITH(Expression("2 * (1, x)"), Catch::Contains("arguments of a function only"));
+    CHECK(Expression("min(1, (x), max(y, 2))")(Vector3(0.5, 3.0, 0.0), 0.0) == 0.5);
+    std::string sum = "x";
+    while (sum.size() < 25'000) {
+        sum += "+0*y";
+    }
+    CHECK_THROWS_WITH(Expression(sum),
+                      "expression: it has 25001 characters; at most 10000 are read");
+    CHECK_THROWS_WITH(Expression(std::string(2000, '(') + "x" + std::string(2000, ')')),
+                      "expression: more than 100 parentheses inside each other");
     const Expression f("1/x");
     CHECK_THROWS_WITH(f(Vector3(0.0, 1.0, 0.0), 0.0),
                       "expression '1/x': is inf at x = 0, y = 1, z = 0, t = 0");

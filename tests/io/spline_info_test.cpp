@@ -102,7 +102,7 @@ TEST_CASE("spline_info_text: lists folded and left-handed patches", "[io]") {
     pair.patches[1] = {pair.patches[1].space(), folded, pair.patches[1].weights()};
     const std::string text = io::spline_info_text(file);
     CHECK_THAT(text, Contains("valid, left-handed, smallest Jacobian "));
-    CHECK_THAT(text, Contains("\nfolded patches: 1\nleft-handed patches: 0\n"));
+    CHECK_THAT(text, Contains("\nfolded: patch 1\nleft-handed: patch 0\n"));
     CHECK(info_of(file)["patches"][1]["min_scaled_jacobian"] < 0.0);
 }
 
@@ -188,5 +188,5 @@ TEST_CASE("spline_info: two patches of a public volume are folded at a corner", 
     CHECK(info["patches"][8]["min_scaled_jacobian"] == Approx(-0.06).margin(0.005));
     CHECK(info["patches"][5]["min_jacobian"] < 0.0);
     CHECK(info["worst_patch"] == 8);
-    CHECK_THAT(io::spline_info_text(file), Contains("\nfolded patches: 5, 8\n"));
+    CHECK_THAT(io::spline_info_text(file), Contains("\nfolded: patch 5, patch 8\n"));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "iga/assembly/elasticity.h"
 #include "iga/core/error.h"
 #include "iga/core/parallel.h"
 #include "iga/post/norms.h"
@@ -317,4 +318,42 @@ TEST_CASE("solve_linear_static: Poisson on a curved ring", "[solve]") {
     const auto result = solve_linear_static(space_of<2>(part, 3, {8, 2}), problem);
     CHECK(std::abs(result.cases[0].displacement.value(0, Vector2(0.0, 0.4))[0]) < 1e-5);
     CHECK(result.cases[0].balance < 1e-10);
+}
+
+TEST_CASE("solve_linear_static: reactions to prescribed displacements balance", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(bar(2.0), 2, {2, 1, 1});
+    Problem problem;
+    problem.materials = {make_isotropic("steel", 200.0, 0.3)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0),
+                        make_support("side_1", 0.1, 0.0, 0.0)};
+    const auto result = solve_linear_static(space, problem);
+    CHECK(result.cases[0].reactions.at("side_1")[0] > 1.0);
+    CHECK(result.cases[0].balance < 1e-12);
+}
+
+TEST_CASE("solve_linear_static: a negative foundation is refused", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(bar(2.0), 1, {1, 1, 1});
+    Problem problem;
+    problem.materials = {make_isotropic("steel", 200.0, 0.3)};
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0)};
+    problem.foundations.resize(1);
+    problem.foundations[0].on = "side_1";
+    problem.foundations[0].normal = constant(-10.0);
+    CHECK_THROWS_WITH(
+        solve_linear_static(space, problem),
+        Catch::Matchers::Contains("foundation on 'side_1': its stiffness is -10 at "));
+}
+
+TEST_CASE("body_volume: areas count by thickness or as rings", "[solve]") {
+    MultiPatch<2> square;
+    square.patches = {make_box<2>(Vector2(1.0, 3.0))};
+    Problem problem;
+    problem.kinematics = Kinematics::plane_stress;
+    problem.thickness = 0.1;
+    CHECK(body_volume(problem, square) == Approx(0.3).epsilon(1e-14));
+    problem.kinematics = Kinematics::axisymmetric;
+    CHECK(body_volume(problem, square) == Approx(3.0 * std::numbers::pi).epsilon(1e-14));
+    MultiPatch<2> ring;
+    ring.patches = {make_quarter_annulus(1.0, 2.0)};
+    CHECK(body_volume(problem, ring) == Approx(14.0 / 3.0 * std::numbers::pi).epsilon(1e-12));
 }

@@ -348,6 +348,13 @@ TEST_CASE("make_conforming: shapes that differ are named with the gap", "[topolo
     CHECK_THROWS_AS(make_conforming(pair), TopologyError);
 }
 
+TEST_CASE("find_interfaces: a patch that lies on another is refused", "[topology]") {
+    MultiPatch<3> twice{{make_unit_box<3>(1, 1), make_unit_box<3>(1, 1)}, {}, {}};
+    CHECK_THROWS_WITH(find_interfaces(twice),
+                      "find_interfaces: all sides of patch 0 coincide with those of patch 1: one "
+                      "lies on the other; remove it");
+}
+
 TEST_CASE("find_interfaces: 8000 patches take less than two seconds", "[topology]") {
     constexpr int n = 20;
     MultiPatch<3> grid;
