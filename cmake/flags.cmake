@@ -12,6 +12,8 @@ target_compile_options(couture_flags INTERFACE $<BUILD_INTERFACE:
     # the others of that kind must not stop a build on a machine that we have not seen.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-maybe-uninitialized
         -Wno-uninitialized
+        # Vectors that never leave one source are no matter of the ABI.
+        -Wno-psabi
         -Wno-error=stringop-overread -Wno-error=restrict -Wno-error=free-nonheap-object
         -Wno-error=dangling-pointer -Wno-error=use-after-free -Wno-error=nonnull>
     $<$<AND:$<BOOL:${COUTURE_NATIVE}>,$<CONFIG:Release>>:-march=native>>)

@@ -115,8 +115,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("first", compare->first, "a summary (.json), a field (.vtu) or a spline file")
         ->required();
     sub->add_option("second", compare->second, "another of the same kind")->required();
-    sub->add_option("--tolerance", compare->tolerance, "relative difference that counts as none")
-        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--tolerance", compare->tolerance, "relative difference that counts as none");
 
     const auto refuse = [&](const std::string& message) {
         fmt::print(stderr, "couture: {}\n", message);

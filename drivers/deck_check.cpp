@@ -66,6 +66,14 @@ class DeckCheck {
                        : "the geometry is plane: [analysis] needs kinematics = 'plane_strain', "
                          "'plane_stress' or 'axisymmetric'");
         }
+        if (problem_.kinematics == iga::Kinematics::axisymmetric &&
+            geometry_.bounding_box()(0, 0) < -1e-9 * geometry_.size()) {
+            add(deck_.geometry.source, "",
+                fmt::format(
+                    "the geometry reaches x = {:g}; in axisymmetric problems x is the radius "
+                    "and must be at least 0",
+                    geometry_.bounding_box()(0, 0)));
+        }
         if (geometry_.dimension() != d) {
             add(deck_.geometry.source, "",
                 fmt::format("the geometry is a surface in space ({} coordinates); the solver "

@@ -151,7 +151,7 @@ void check_size(const io::Deck& deck, const iga::MultiPatch<d>& geometry, int n_
     const auto available = static_cast<double>(available_memory());
     if (size.matrix_memory > available) {
         throw SolverError(
-            "{}: the matrix of {:.3g} unknowns takes about {:.1f} GB, {:.1f} GB of memory are "
+            "{}: the matrix of {:.3g} unknowns takes about {:.3g} GB, {:.3g} GB of memory are "
             "free; "
             "take fewer 'elements' or a lower 'degree' in [discretization]",
             deck.path.string(), n_components * size.n_functions, size.matrix_memory / gigabyte,

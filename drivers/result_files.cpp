@@ -93,9 +93,13 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
             files.push_back(folder / (stem + "_gauss.vtu"));
             const auto points =
                 iga::gauss_point_stresses<d>(deck.problem, load_case.displacement, load_case.name);
-            const std::vector<io::PointArray> arrays = {
-                {"stress", points.stresses, voigt_names},
-                {"von_mises", von_mises_rows(points.stresses), {}}};
+            std::vector<io::PointArray> arrays;
+            if (deck.problem.physics == iga::Physics::poisson) {
+                arrays = {{"flux", points.stresses.leftCols(3), {}}};
+            } else {
+                arrays = {{"stress", points.stresses, voigt_names},
+                          {"von_mises", von_mises_rows(points.stresses), {}}};
+            }
             io::write_points_vtu(files.back(), points.points, arrays, origin);
         }
         if (deck.output.png) {

@@ -193,7 +193,8 @@ void read_output(Section& section, Deck& deck) {
     output.png_quantity = is_elasticity ? "von_mises" : "potential";
     std::vector<std::string> names;
     for (const QuantityInfo& info : quantities(is_elasticity)) {
-        if (info.place == QuantityInfo::Place::point) {
+        // Pictures are drawn from displacement and stress.
+        if (info.place == QuantityInfo::Place::point && !info.name.starts_with("strain_")) {
             names.push_back(info.name);
         }
     }

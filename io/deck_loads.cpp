@@ -75,7 +75,7 @@ void read_poisson_loads(Section& top, iga::Problem& problem) {
     });
     for_each_entry(top, "source", [&](Section& section) {
         auto source = make_load<iga::BodyForce>(section);
-        source.patches = section.integers("patches", 0);
+        source.patches = section.patches();
         source.components = {read_value(section, dimensions::heat_source), constant(0.0),
                              constant(0.0)};
         problem.body_forces.push_back(std::move(source));
@@ -107,7 +107,7 @@ void read_loads(Section& top, iga::Problem& problem) {
     });
     for_each_entry(top, "body_force", [&](Section& section) {
         auto force = make_load<iga::BodyForce>(section);
-        force.patches = section.integers("patches", 0);
+        force.patches = section.patches();
         force.components = read_components(section, dimensions::force_per_volume);
         problem.body_forces.push_back(std::move(force));
     });
@@ -115,7 +115,7 @@ void read_loads(Section& top, iga::Problem& problem) {
     for_each_entry(top, "resultant", [&](Section& section) { read_resultant(section, problem); });
     for_each_entry(top, "temperature", [&](Section& section) {
         auto temperature = make_load<iga::Temperature>(section);
-        temperature.patches = section.integers("patches", 0);
+        temperature.patches = section.patches();
         section.require("change", "degrees above the strain-free state");
         temperature.change =
             section.function("change", dimensions::temperature).value_or(constant(0.0));

@@ -116,7 +116,7 @@ void read_materials(Section& top, iga::Problem& problem) {
     for_each_named(top, "material", [&](const std::string& name, Section& section) {
         iga::Material material;
         material.name = name;
-        material.patches = section.integers("patches", 0);
+        material.patches = section.patches();
         if (is_elasticity) {
             const std::string model = section.choice("model", {"linear_elastic", "orthotropic"})
                                           .value_or("linear_elastic");

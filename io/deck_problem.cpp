@@ -34,6 +34,11 @@ void read_analysis(Section& section, iga::Problem& problem) {
 void read_combinations(Section& top, iga::Problem& problem) {
     const std::vector<std::string> cases = problem.load_cases();
     for_each_named(top, "combination", [&](const std::string& name, Section& section) {
+        if (name.find_first_of("/\\") != std::string::npos || name.starts_with('.')) {
+            section.mistake("", fmt::format("{} can't name a result file; take letters, digits, "
+                                            "spaces, '-' and '_'",
+                                            section.title()));
+        }
         if (section.table().entries.empty()) {
             section.mistake(
                 "", fmt::format("{} is empty; give load cases and their factors", section.title()));
@@ -73,6 +78,13 @@ void read_problem(Section& top, iga::Problem& problem) {
     read_conditions(top, problem);
     read_loads(top, problem);
     read_combinations(top, problem);
+    for (const auto& [place, name] : top.context().uses_of_time) {
+        top.context().mistakes.add(
+            place,
+            fmt::format("{} depends on the time t, which linear analyses do not have; write a "
+                        "load case for each time",
+                        name));
+    }
     // What belongs to the other type of analysis is a mistake of its own, not an unknown section.
     static const std::vector<std::string> elastic = {
         "symmetry",   "fixed",      "displacement", "pressure",   "traction",

@@ -168,6 +168,18 @@ std::vector<std::string> Section::sets() {
     return names;
 }
 
+std::vector<int> Section::patches() {
+    std::vector<int> numbers = integers("patches", 0);
+    std::vector<int> sorted = numbers;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) {
+        mistake("patches", fmt::format("'patches' of {} names patch {} twice; once is enough",
+                                       title_, *twice));
+    }
+    return numbers;
+}
+
 std::string Section::load_case() {
     const std::string name = text("case").value_or("");
     // Results are files named after their load case.
@@ -281,7 +293,11 @@ std::optional<Function> Section::to_function(const TomlNode& node, const std::st
     if (node.kind == TomlNode::Kind::text && !looks_like_quantity(node.text)) {
         try {
             Expression expression(node.text);
-            if (!expression.variables().empty()) {
+            const std::vector<std::string>& names = expression.variables();
+            if (!names.empty()) {
+                if (std::find(names.begin(), names.end(), "t") != names.end()) {
+                    context_->uses_of_time.emplace_back(node.place, name_of(key));
+                }
                 // What goes wrong at some point later still names the place in the deck.
                 return Function([expression = std::move(expression),
                                  where = fmt::format("{}: {}", node.place.source, name_of(key))](

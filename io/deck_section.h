@@ -44,6 +44,8 @@ struct DeckContext {
     UnitSystem units;
     /// Displacements have no z.
     bool is_plane = false;
+    /// Values that name t: where, and what they are.
+    std::vector<std::pair<TomlPlace, std::string>> uses_of_time;
 };
 
 /// One table of a deck while it is read. Every reader notes the key as known; `finish` reports the
@@ -75,6 +77,8 @@ class Section {
     [[nodiscard]] std::vector<std::string> texts(const std::string& key);
     /// The names under 'on', which must be there, each once.
     [[nodiscard]] std::vector<std::string> sets();
+    /// The patch numbers under 'patches', each once; empty if there are none.
+    [[nodiscard]] std::vector<int> patches();
     /// The name under 'case', or "".
     [[nodiscard]] std::string load_case();
     /// One whole number or a list of them, each at least `low`.

@@ -59,6 +59,8 @@ constexpr Color text_color{0.13, 0.15, 0.18};
 constexpr Color missing_color{0.6, 0.6, 0.6};
 
 using Range = std::array<double, 2>;
+/// Values that differ by less, relative to their size, are shown as one.
+constexpr double uniform = 1e-6;
 
 void check_piece(const char* kind, std::size_t i, const MatrixX& points) {
     if (points.rows() == 0 || points.cols() != 3 || !points.allFinite()) {
@@ -125,7 +127,13 @@ Range value_range(const Scene& scene) {
             }
         }
     }
-    return range[0] <= range[1] ? range : Range{0.0, 0.0};
+    if (!(range[0] <= range[1])) {
+        return {0.0, 0.0};
+    }
+    // Rounding is not drawn as if it were a field.
+    const double size = std::max(std::abs(range[0]), std::abs(range[1]));
+    const double middle = 0.5 * (range[0] + range[1]);
+    return range[1] - range[0] > uniform * size ? range : Range{middle, middle};
 }
 
 /// The camera's axes: right, up, towards the viewer.

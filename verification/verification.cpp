@@ -8,6 +8,7 @@
 #include "iga/core/error.h"
 #include "verification/benchmarks/beams.h"
 #include "verification/benchmarks/cook.h"
+#include "verification/benchmarks/hyperelastic.h"
 #include "verification/benchmarks/kirsch.h"
 #include "verification/benchmarks/lame.h"
 #include "verification/benchmarks/nafems.h"
@@ -32,7 +33,7 @@ std::vector<Case> all_cases() {
     std::vector<Case> cases;
     for (std::vector<Case> (*group)() :
          {known_shape_cases, patch_test_cases, convergence_cases, lame_cases, kirsch_cases,
-          nafems_cases, cook_cases, shell_cases, beam_cases}) {
+          nafems_cases, cook_cases, shell_cases, beam_cases, hyperelastic_cases}) {
         const std::vector<Case> more = group();
         cases.insert(cases.end(), more.begin(), more.end());
     }

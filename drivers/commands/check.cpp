@@ -15,22 +15,22 @@ namespace couture::drivers {
 
 namespace {
 
-/// Foundations may hold a body too: they need the assembly, so such decks are left to the run.
+/// What a run does before it assembles: expressions are asked for wherever it needs them.
 template <int d>
-void check_held(const io::Deck& deck, const iga::Space<d>& space) {
-    if (!deck.problem.foundations.empty()) {
-        return;
-    }
-    const auto constraints =
-        iga::make_constraints<d>(space, deck.problem, deck.problem.load_cases());
-    const auto n_unknowns = static_cast<Eigen::Index>(constraints.is_fixed.size());
-    const std::vector<std::string> free = iga::free_rigid_motions<d>(
-        space, deck.problem, constraints, SparseMatrix(n_unknowns, n_unknowns));
-    if (!free.empty()) {
-        throw InputError(
-            "{}: the body can move freely: {}; hold it by [[fixed]], [[symmetry]] or "
-            "[[displacement]]",
-            deck.path.filename().string(), fmt::join(free, ", "));
+void check_problem(const io::Deck& deck, const iga::Space<d>& space) {
+    const iga::Problem& problem = deck.problem;
+    const std::optional<int> n_points = deck.discretization.n_gauss_points;
+    try {
+        iga::require_held<d>(space, problem,
+                             iga::make_constraints<d>(space, problem, problem.load_cases()),
+                             iga::assemble_foundations<d>(space, problem, n_points));
+        for (const std::string& load_case : problem.load_cases()) {
+            static_cast<void>(iga::assemble_loads<d>(space, problem, load_case, n_points));
+        }
+    } catch (const InputError& error) {
+        const std::string name = deck.path.filename().string();
+        const std::string what = error.what();
+        throw InputError("{}{}", what.starts_with(name) ? "" : name + ": ", what);
     }
 }
 
@@ -40,12 +40,7 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     check_deck<d>(deck, geometry);
     static_cast<void>(locate_probes<d>(deck, geometry));
     const auto space = make_space<d>(deck, geometry);
-    check_held<d>(deck, *space);
-    // Expressions are asked for at every place where a run needs them.
-    for (const std::string& load_case : deck.problem.load_cases()) {
-        static_cast<void>(iga::assemble_loads<d>(*space, deck.problem, load_case,
-                                                 deck.discretization.n_gauss_points));
-    }
+    check_problem<d>(deck, *space);
     const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
     const int n_unknowns = n_components * space->n_dofs();
     if (common.json) {

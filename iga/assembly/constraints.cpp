@@ -286,8 +286,13 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
             return;
         }
         double scale = values.cwiseAbs().maxCoeff();
+        const HeldDirection<d>* holder = &here.front();
         for (const HeldDirection<d>& other : here) {
             scale = std::max(scale, other.values.cwiseAbs().maxCoeff());
+            if (std::abs(other.direction.dot(direction)) >
+                std::abs(holder->direction.dot(direction))) {
+                holder = &other;
+            }
         }
         if (value.cwiseAbs().maxCoeff() > same_value * scale + rounding * largest_value) {
             const Support& support = problem.supports[i_support];
@@ -295,7 +300,7 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
                 "{}displacement on '{}' contradicts the one on '{}' at {}: they differ "
                 "by {:.6g}; leave one of them out where they meet",
                 support.source.empty() ? "" : support.source + ": ", support.on,
-                problem.supports[here.front().support].on, format_point(positions.row(dof)),
+                problem.supports[holder->support].on, format_point(positions.row(dof)),
                 value.cwiseAbs().maxCoeff());
         }
     };
@@ -536,12 +541,32 @@ std::vector<std::string> free_rigid_motions(const Space<d>& space, const Problem
     return free;
 }
 
+template <int d>
+void require_held(const Space<d>& space, const Problem& problem, const Constraints<d>& constraints,
+                  const SparseMatrix& foundations) {
+    const std::vector<std::string> free =
+        free_rigid_motions(space, problem, constraints, foundations);
+    if (free.empty()) {
+        return;
+    }
+    if (problem.physics == Physics::poisson) {
+        throw InputError("the potential is given nowhere: free mode: {}; add a [[potential]]",
+                         fmt::join(free, ", "));
+    }
+    throw InputError(
+        "the body is not held: free rigid-body motions: {}; add supports ([[fixed]], "
+        "[[symmetry]], [[displacement]]) or a [[foundation]]",
+        fmt::join(free, ", "));
+}
+
 #define COUTURE_INSTANTIATE(d)                                                                     \
     template struct Constraints<d>;                                                                \
     template Constraints<d> make_constraints(const Space<d>&, const Problem&,                      \
                                              const std::vector<std::string>&);                     \
     template MatrixX dof_positions(const Space<d>&);                                               \
     template MatrixX rigid_body_modes(const Space<d>&, const Problem&, std::vector<std::string>&); \
+    template void require_held(const Space<d>&, const Problem&, const Constraints<d>&,             \
+                               const SparseMatrix&);                                               \
     template std::vector<std::string> free_rigid_motions(                                          \
         const Space<d>&, const Problem&, const Constraints<d>&, const SparseMatrix&);
 COUTURE_INSTANTIATE(2)

@@ -66,4 +66,9 @@ template <int d>
                                                           const Constraints<d>& constraints,
                                                           const SparseMatrix& foundations);
 
+/// @throws InputError  if rigid-body motions are free: names them
+template <int d>
+void require_held(const Space<d>& space, const Problem& problem, const Constraints<d>& constraints,
+                  const SparseMatrix& foundations);
+
 }  // namespace couture::iga

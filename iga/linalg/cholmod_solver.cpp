@@ -9,6 +9,7 @@
 
 #include "iga/core/parallel.h"
 #include "iga/core/timer.h"
+#include "iga/linalg/refinement.h"
 #include "iga/linalg/system_checks.h"
 
 namespace couture::iga {
@@ -21,12 +22,6 @@ using Index = SuiteSparse_long;
 constexpr double singular_energy = 1e-14;
 /// Such a v is looked for if the smallest pivot is below this part of its diagonal entry.
 constexpr double suspicious_pivot = 1e-9;
-/// Residuals above it are refined, as long as that helps.
-constexpr double refinement_goal = 1e-13;
-constexpr int max_refinements = 4;
-/// Residuals above the tolerance are accepted up to this if they are rounding: thin or nearly
-/// incompressible bodies leave them, since |A| |x| is much larger than |b|.
-constexpr double largest_rounding = 1e-6;
 
 /// CHOLMOD's settings and statistics.
 class Common {
@@ -161,48 +156,11 @@ class CholmodSolver final : public LinearSolver {
             throw SolverError("cholmod: solve was called before factorize succeeded");
         }
         check_right_hand_side(*matrix_, b, "cholmod");
-        const MatrixX free_b = free_part(is_fixed_, b);
-        SolveReport report;
-        report.solver = "cholmod";
+        SolveReport report = solve_refined(
+            "cholmod", *matrix_, is_fixed_, b, options_.tolerance,
+            [this](const MatrixX& r) { return apply_inverse(r); },
+            fmt::format("smallest pivot {:.1e} of its diagonal entry", smallest_pivot_), x);
         report.memory = factor_bytes();
-        x = apply_inverse(free_b);
-        MatrixX r = residual(*matrix_, is_fixed_, free_b, x);
-        report.residual = worst_ratio(r, free_b);
-        for (int i = 0; i < max_refinements && report.residual > refinement_goal; ++i) {
-            const MatrixX better_x = x + apply_inverse(r);
-            MatrixX better_r = residual(*matrix_, is_fixed_, free_b, better_x);
-            const double better_residual = worst_ratio(better_r, free_b);
-            ++report.iterations;
-            if (!(better_residual < report.residual)) {
-                break;
-            }
-            const bool has_stalled = better_residual > 0.5 * report.residual;
-            x = better_x;
-            r = std::move(better_r);
-            report.residual = better_residual;
-            if (has_stalled) {
-                break;
-            }
-        }
-        // A tolerance below the precision of one number is refused like any other that is missed.
-        if (report.residual > options_.tolerance && report.residual <= largest_rounding &&
-            options_.tolerance >= std::numeric_limits<double>::epsilon()) {
-            const double rounding = rounding_ratio(*matrix_, is_fixed_, free_b, x);
-            if (report.residual <= rounding) {
-                report.note =
-                    fmt::format("the residual is the rounding of A x: |A| |x| is {:.1e} times |b|",
-                                rounding / std::numeric_limits<double>::epsilon());
-                return report;
-            }
-        }
-        if (!(report.residual <= options_.tolerance)) {
-            throw SolverError(
-                "cholmod: |b - A x| / |b| = {:.3g} > {:.3g} after {} refinements; the matrix is "
-                "ill-conditioned (smallest pivot {:.1e} of its diagonal entry): scale the problem "
-                "or raise "
-                "the tolerance",
-                report.residual, options_.tolerance, report.iterations, smallest_pivot_);
-        }
         return report;
     }
 
@@ -277,7 +235,7 @@ class CholmodSolver final : public LinearSolver {
         if (common_->status == CHOLMOD_NOT_POSDEF) {
             const Index column = static_cast<const Index*>(factor_->Perm)[factor_->minor];
             release();
-            throw SolverError(
+            throw NotPositiveDefinite(
                 "cholmod: the matrix is not positive definite: the pivot of {} is not positive; "
                 "check supports, material parameters and folded elements",
                 describe_unknown(matrix, kept_[column]));

@@ -11,6 +11,12 @@ class FactorTooLarge : public SolverError {
     using SolverError::SolverError;
 };
 
+/// A pivot of the Cholesky factor is not positive.
+class NotPositiveDefinite : public SolverError {
+  public:
+    using SolverError::SolverError;
+};
+
 /// Supernodal Cholesky factorization A = L L^T. Nested dissection orders the graph of blocks; the
 /// size of the factor is known before it is computed and compared with the memory limit. A matrix
 /// with the same pattern and fixed unknowns as the one before is not ordered again.

@@ -7,6 +7,7 @@
 #include "iga/core/error.h"
 #include "iga/linalg/cholmod_solver.h"
 #include "iga/linalg/petsc_solver.h"
+#include "iga/linalg/umfpack_solver.h"
 
 namespace couture::iga {
 
@@ -75,12 +76,15 @@ std::unique_ptr<LinearSolver> make_linear_solver(const SolverOptions& options) {
     if (options.name == "petsc") {
         return make_petsc_solver(options);
     }
+    if (options.name == "umfpack") {
+        return make_umfpack_solver(options);
+    }
     throw InputError("linear solver: unknown name '{}'; there are {}", options.name,
                      fmt::join(linear_solver_names(), ", "));
 }
 
 const std::vector<std::string>& linear_solver_names() {
-    static const std::vector<std::string> names{"auto", "cholmod", "petsc"};
+    static const std::vector<std::string> names{"auto", "cholmod", "petsc", "umfpack"};
     return names;
 }
 

@@ -19,7 +19,7 @@ struct LinearSystem {
 };
 
 struct SolverOptions {
-    /// "auto", "cholmod" or "petsc".
+    /// "auto", "cholmod", "petsc" or "umfpack".
     std::string name = "auto";
     /// Largest accepted |b - A x| / |b|. A direct solver may also stop at the rounding of A x where
     /// that is larger, up to 1e-6, and says so in the report's note.

@@ -53,15 +53,7 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
     const BilinearForm<d> form = stiffness_form<d>(problem, space->n_patches());
     const SparseMatrix foundations = assemble_foundations(*space, problem, options.n_gauss_points);
     const Constraints<d> constraints = make_constraints(*space, problem, cases);
-    const std::vector<std::string> free =
-        free_rigid_motions(*space, problem, constraints, foundations);
-    if (!free.empty()) {
-        throw SolverError(
-            "the body is not held: free {}: {}; add supports ([[fixed]], "
-            "[[symmetry]], [[displacement]]) or a [[foundation]]",
-            problem.physics == Physics::poisson ? "mode" : "rigid-body motions",
-            fmt::join(free, ", "));
-    }
+    require_held(*space, problem, constraints, foundations);
 
     std::vector<MatrixX> loads;
     BlockMatrix K = timed(result.phases, "assembly", [&] {

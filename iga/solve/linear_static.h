@@ -45,10 +45,11 @@ struct LinearStaticResult {
 /// Solves the linear problem on a space, all load cases with one factorization, then the
 /// combinations.
 ///
-/// @throws InputError     for a load or a support that can't hold (names it)
+/// @throws InputError     for a load or a support that can't hold (names it), if rigid-body motions
+///                        are free (names them)
 /// @throws TopologyError  for a set that does not exist
 /// @throws GeometryError  if a quadrature point sees det J change sign: patch, place, value
-/// @throws SolverError    if rigid-body motions are free (names them), or the solver fails
+/// @throws SolverError    if the solver fails
 template <int d>
 [[nodiscard]] LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space,
                                                         const Problem& problem,

@@ -55,17 +55,7 @@ SteppingReport follow_loads(const SpacePtr<d>& space, const Problem& problem,
     check_options(options);
     check_problem(problem);
     const SparseMatrix foundations = assemble_foundations(*space, problem, options.n_gauss_points);
-    {
-        const Constraints<d> constraints = make_constraints(*space, problem, {""});
-        const std::vector<std::string> free =
-            free_rigid_motions(*space, problem, constraints, foundations);
-        if (!free.empty()) {
-            throw SolverError(
-                "the body is not held: free rigid-body motions: {}; add supports ([[fixed]], "
-                "[[symmetry]], [[displacement]]) or a [[foundation]]",
-                fmt::join(free, ", "));
-        }
-    }
+    require_held(*space, problem, make_constraints(*space, problem, {""}), foundations);
     FiniteStrain<d> body(space, problem, options.n_gauss_points);
     Newton<d> newton(*space, body, foundations, options.n_gauss_points, options.newton);
 

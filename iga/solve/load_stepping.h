@@ -63,7 +63,6 @@ struct SteppingReport {
 /// @param accept  called after each accepted step, in order
 /// @throws InputError, TopologyError  as `solve_linear_static`; also for load cases and
 ///                                    temperatures, which a stepped run does not have
-/// @throws SolverError  if rigid-body motions are free (names them)
 template <int d>
 [[nodiscard]] SteppingReport follow_loads(const SpacePtr<d>& space, const Problem& problem,
                                           const SteppingOptions& options,

@@ -8,6 +8,7 @@
 #include "iga/core/error.h"
 #include "iga/core/format.h"
 #include "iga/core/log.h"
+#include "iga/linalg/cholmod_solver.h"
 #include "iga/solve/static_system.h"
 
 namespace couture::iga {
@@ -55,6 +56,7 @@ Newton<d>::Newton(const Space<d>& space, FiniteStrain<d>& body, const SparseMatr
       foundations_(foundations),
       n_gauss_points_(n_gauss_points),
       options_(options),
+      solver_(make_linear_solver(options.solver)),
       matrix_(make_pattern(space, d)) {}
 
 template <int d>
@@ -64,6 +66,24 @@ VectorX Newton<d>::internal_forces(const MatrixX& u) const {
         forces += foundations_ * flatten(u);
     }
     return forces;
+}
+
+template <int d>
+MatrixX Newton<d>::solve_tangent(const std::vector<char>& is_fixed, const MatrixX& b) {
+    MatrixX x;
+    try {
+        // Ordered once: the pattern stays.
+        solver_->factorize({matrix_, is_fixed, {}});
+        solver_->solve(b, x);
+    } catch (const NotPositiveDefinite& error) {
+        log::detail("the tangent is indefinite, LU instead of Cholesky");
+        SolverOptions options = options_.solver;
+        options.name = "umfpack";
+        const std::unique_ptr<LinearSolver> lu = make_linear_solver(options);
+        lu->factorize({matrix_, is_fixed, {}});
+        lu->solve(b, x);
+    }
+    return x;
 }
 
 template <int d>
@@ -139,11 +159,9 @@ NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& 
         add_symmetric(matrix_, follower.stiffness);
         rotate_to_frames(matrix_, constraints);
         floor = rounding * largest_entry(matrix_.values) * now.norm();
-        const std::unique_ptr<LinearSolver> solver = make_linear_solver(options_.solver);
         MatrixX step;
         try {
-            solver->factorize({matrix_, is_fixed, {}});
-            solver->solve(MatrixX(-r - matrix_ * MatrixX(jump)), step);
+            step = solve_tangent(is_fixed, -r - matrix_ * MatrixX(jump));
         } catch (const SolverError& error) {
             return fail(error.what());
         }

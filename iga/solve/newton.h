@@ -49,12 +49,14 @@ class Newton {
 
   private:
     [[nodiscard]] VectorX internal_forces(const MatrixX& u) const;
+    [[nodiscard]] MatrixX solve_tangent(const std::vector<char>& is_fixed, const MatrixX& b);
 
     const Space<d>& space_;
     FiniteStrain<d>& body_;
     const SparseMatrix& foundations_;
     std::optional<int> n_gauss_points_;
     NewtonOptions options_;
+    std::unique_ptr<LinearSolver> solver_;
     BlockMatrix matrix_;
     VectorX residual_;
     MatrixX external_;

@@ -56,12 +56,12 @@ TEST_CASE("couture solve: an expectation that is not met ends with 1", "[drivers
     CHECK(Json::parse(result.output)["status"] == "expectation_not_met");
 }
 
-TEST_CASE("couture solve: a body that can move ends with 1 and one object", "[drivers]") {
+TEST_CASE("couture solve: a body that can move ends with 2 and one object", "[drivers]") {
     const TemporaryFolder folder;
     const auto result = run_couture(
         "solve --json --set 'symmetry.0.on=[\"x_low\", \"y_low\"]' " + bar, folder.path());
-    CHECK(result.exit_code == 1);
-    CHECK(Json::parse(result.output)["status"] == "failed");
+    CHECK(result.exit_code == 2);
+    CHECK(Json::parse(result.output)["status"] == "bad_input");
 }
 
 TEST_CASE("couture solve: more memory than there is ends with 1 before anything is made",

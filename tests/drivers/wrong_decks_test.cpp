@@ -287,7 +287,33 @@ TEST_CASE("deck: names that are given twice, can't name a file, or hold nothing"
                Catch::Contains("case 'a/../b' of [[pressure]] can't name a result file"));
     CHECK_THAT(error_of(replaced("[[output.probe]]", "[combination.all]\n[[output.probe]]")),
                Catch::Contains("[combination.all] is empty; give load cases and their factors"));
+    CHECK_THAT(error_of(replaced("1.0", "\"2 * t\"")),
+               Catch::Contains("bracket.toml:13: 'value' of [[pressure]] depends on the time t, "
+                               "which linear analyses do not have"));
     CHECK_THAT(error_of(replaced("1.0", "\"1,5\"")),
                Catch::Contains("bracket.toml:13:") &&
                    Catch::Contains("decimals are written with a point"));
+}
+
+TEST_CASE("deck: an axisymmetric body lies right of the axis", "[drivers]") {
+    std::string text = plane_deck("[[fixed]]\non = \"x_low\"\n");
+    text.replace(text.find("plane_strain"), 12, "axisymmetric");
+    CHECK(error_of(text) == "no error");
+    const io::Deck deck = io::parse_deck(text, "bracket.toml");
+    auto geometry = std::get<iga::MultiPatch<2>>(drivers::load_geometry(deck));
+    MatrixX points = geometry.patches[0].control_points();
+    points.col(0).array() -= 0.25;
+    geometry.patches[0] = iga::Patch<2>(geometry.patches[0].space(), points);
+    CHECK_THROWS_WITH(
+        drivers::check_deck<2>(deck, geometry),
+        Catch::Contains("the geometry reaches x = -0.25; in axisymmetric problems x is "
+                        "the radius"));
+}
+
+TEST_CASE("deck: patches are named once, strains are not drawn", "[drivers]") {
+    CHECK_THAT(error_of(replaced("youngs_modulus", "patches = [0, 0]\nyoungs_modulus")),
+               Catch::Contains("'patches' of [material.steel] names patch 0 twice"));
+    CHECK_THAT(error_of(replaced("[[output.probe]]",
+                                 "[output]\npng_quantity = \"strain_xx\"\n[[output.probe]]")),
+               Catch::Contains("bracket.toml:15: unknown png_quantity 'strain_xx'"));
 }

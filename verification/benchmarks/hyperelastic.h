@@ -1,0 +1,10 @@
+#pragma once
+
+#include "verification/verification.h"
+
+namespace couture::verification {
+
+/// Homogeneous states and inflated tubes and spheres of compressible neo-Hookean material.
+[[nodiscard]] std::vector<Case> hyperelastic_cases();
+
+}  // namespace couture::verification
