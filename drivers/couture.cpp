@@ -53,11 +53,12 @@ int main(int argc, char** argv) {
         return *exit_code;
     }
     // Libraries that we stand on spin or abort where they get no memory.
-    if (available_memory() < least_memory) {
-        return report(fmt::format("{} MB of memory are free for this process, it needs {} MB to "
-                                  "start (ulimit -v, container limits)",
-                                  available_memory() >> 20U, least_memory >> 20U),
-                      drivers::ExitCode::run_failed, command.common.json);
+    if (available_address_space() < least_memory) {
+        return report(
+            fmt::format("the address space of this process is limited to {} MB more (ulimit "
+                        "-v), it needs {} MB to start",
+                        available_address_space() >> 20U, least_memory >> 20U),
+            drivers::ExitCode::run_failed, command.common.json);
     }
     return run_guarded(command);
 }

@@ -42,8 +42,9 @@ std::size_t cgroup_available() {
     return std::numeric_limits<std::size_t>::max();
 }
 
-/// What `ulimit -v` leaves.
-std::size_t process_available() {
+}  // namespace
+
+std::size_t available_address_space() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
         return std::numeric_limits<std::size_t>::max();
@@ -55,10 +56,8 @@ std::size_t process_available() {
     return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
-}  // namespace
-
 std::size_t available_memory() {
-    return std::min({machine_available(), cgroup_available(), process_available()});
+    return std::min({machine_available(), cgroup_available(), available_address_space()});
 }
 
 }  // namespace couture

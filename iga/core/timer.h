@@ -29,7 +29,11 @@ struct Phase {
 /// Highest resident memory of this process so far, bytes.
 [[nodiscard]] std::size_t peak_memory();
 
-/// Memory that can still be had without swapping, bytes (the smaller of machine and cgroup).
+/// What `ulimit -v` leaves this process, bytes.
+[[nodiscard]] std::size_t available_address_space();
+
+/// Memory that can still be had without swapping, bytes (the smallest of machine, cgroup and
+/// address space).
 [[nodiscard]] std::size_t available_memory();
 
 }  // namespace couture

@@ -104,7 +104,7 @@ TEST_CASE("couture: too little memory to start is said", "[drivers]") {
     const TemporaryFolder folder;
     const auto result = run_couture("solve --json " + bar, folder.path(), "ulimit -v 900000");
     CHECK(result.exit_code == 1);
-    CHECK(result.errors.find("MB of memory are free for this process, it needs 1024 MB") !=
+    CHECK(result.errors.find("MB more (ulimit -v), it needs 1024 MB to start") !=
           std::string::npos);
     CHECK(Json::parse(result.output)["status"] == "failed");
 }
