@@ -61,10 +61,10 @@ TEST_CASE("read_splines: truncated and mutated files are read or refused, never 
     io::write_splines(path, multipatch);
     const std::string whole = io::read_text(changed);
     std::mt19937 random(7);
-    const std::string junk(
+    constexpr char characters[] =
         "0-9.eE \n\t<>/\"*,#()\0\xff"
-        "nainf",
-        27);
+        "nainf";
+    const std::string junk(characters, sizeof(characters) - 1);
     for (int i = 0; i < n_trials; ++i) {
         std::string text = whole;
         if (i % 3 == 0) {
