@@ -10,6 +10,8 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <fstream>
+
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
 #include "io/vtk_messages.h"
@@ -39,10 +41,22 @@ std::vector<NamedRows> arrays_of(vtkFieldData& data) {
     return arrays;
 }
 
+/// Enough to know the file's kind.
+std::string read_beginning(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file || std::filesystem::is_directory(path)) {
+        return read_text(path);  // says why it can't be read
+    }
+    std::string text(4096, '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    return text;
+}
+
 }  // namespace
 
 VtuMesh read_vtu(const std::filesystem::path& path) {
-    const std::string beginning = read_text(path).substr(0, 4096);
+    const std::string beginning = read_beginning(path);
     if (beginning.find("<VTKFile") == std::string::npos ||
         beginning.find("UnstructuredGrid") == std::string::npos) {
         throw FileError("{}: not a VTK XML file of an unstructured grid (.vtu)", path.string());

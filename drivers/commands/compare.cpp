@@ -79,7 +79,8 @@ Differences find_differences(const CompareOptions& options) {
     const Json second = read_comparable(options.second);
     Differences differences{compare_json(first, second, options.tolerance), {}};
     const auto hash_of = [](const Json& summary) {
-        return summary.is_object() ? summary.value("deck_hash", "") : "";
+        const bool has_hash = summary.is_object() && summary.contains("deck_hash");
+        return has_hash ? summary["deck_hash"].dump() : std::string("none");
     };
     if (hash_of(first) != hash_of(second)) {
         differences.provenance.push_back(

@@ -329,3 +329,29 @@ TEST_CASE("cholmod: a residual that is rounding of A x is accepted and named", "
     CHECK_THAT(report.note, StartsWith("the residual is the rounding of A x: |A| |x| is "));
     CHECK(x(n - 1, 0) == Approx(0.3 * n).epsilon(1e-6));
 }
+
+TEST_CASE("umfpack: an indefinite matrix is solved", "[linalg]") {
+    MatrixX dense = 4.0 * MatrixX::Identity(12, 12);
+    dense(7, 7) = -1.0;
+    dense(2, 7) = dense(7, 2) = 3.0;
+    const BlockMatrix A = to_blocks(dense, 3);
+    const MatrixX exact = random_matrix(12, 2, 4);
+    const auto solver = make_linear_solver(options_of("umfpack"));
+    solver->factorize({A, {}, {}});
+    MatrixX x;
+    static_cast<void>(solver->solve(dense * exact, x));
+    CHECK((x - exact).norm() < 1e-13);
+}
+
+TEST_CASE("umfpack: singular matrices and too little memory are named", "[linalg]") {
+    MatrixX dense = MatrixX::Identity(6, 6);
+    dense(4, 4) = 0.0;
+    const BlockMatrix singular = to_blocks(dense, 3);
+    CHECK_THROWS_WITH(make_linear_solver(options_of("umfpack"))->factorize({singular, {}, {}}),
+                      "umfpack: the matrix of 6 unknowns can't be factorized: it is singular");
+    const BlockMatrix A = laplacian(8, 1);
+    SolverOptions options = options_of("umfpack");
+    options.memory_limit = 1000;
+    CHECK_THROWS_WITH(make_linear_solver(options)->factorize({A, {}, {}}),
+                      StartsWith("umfpack: the factors of ") && Contains("the limit is 0.001 MB"));
+}

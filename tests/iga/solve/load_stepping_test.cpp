@@ -157,3 +157,14 @@ TEST_CASE("follow_loads: what it can't take is named", "[solve]") {
                       "load steps: smallest 1, first 0.1, largest 0.25; must be positive and not "
                       "decrease");
 }
+
+TEST_CASE("follow_loads: a folded start is named", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1});
+    SteppingState folded;
+    folded.displacement = -1.5 * space->geometry().patches[0].control_points();
+    const auto report = follow_loads<3>(
+        space, stretched_block(1.1), {}, [](const AcceptedStep<3>&) {}, folded);
+    CHECK_FALSE(report.finished);
+    CHECK(report.n_steps == 0);
+    CHECK_THAT(report.reason, Contains("the start is folded: det F = -0.125 in patch 0 at"));
+}
