@@ -10,6 +10,13 @@
 
 namespace couture::iga {
 
+/// How the volumetric part of the stored energy is integrated.
+enum class Volumetric {
+    full,       ///< as it is; locks near incompressibility
+    projected,  ///< through the projection of the change of volume onto splines of one degree less
+    automatic   ///< projected where Poisson's ratio is above 0.49
+};
+
 /// Where a deformation compresses its body most.
 template <int d>
 struct SmallestVolume {

@@ -35,7 +35,8 @@ AcceptedStep<d> run_to_end(const SpacePtr<d>& space, const Problem& problem,
                            const SteppingOptions& options = {}) {
     AcceptedStep<d> last;
     const SteppingReport report =
-        follow_loads<d>(space, problem, options, [&](const AcceptedStep<d>& step) { last = step; });
+        follow_loads<d>(make_start<d>(space), problem, options,
+                        [&](const AcceptedStep<d>& step) { last = step; });
     if (!report.finished) {
         throw SolverError("{}", report.reason);
     }
@@ -69,7 +70,7 @@ Field<3> stretch_block(const Stretches& stretches) {
     problem.supports.push_back(make_support("x_high", move(stretches.x), {}, {}));
     problem.supports.push_back(make_support("y_high", {}, move(stretches.y), {}));
     problem.supports.push_back(make_support("z_high", {}, {}, move(stretches.z)));
-    return {space, run_to_end<3>(space, problem).displacement};
+    return {space, run_to_end<3>(space, problem).state.displacement};
 }
 
 void homogeneous_states(Recorder& recorder) {
@@ -118,7 +119,7 @@ void simple_shear(Recorder& recorder) {
     Support all = make_support("outer", 0.0, 0.0, 0.0);
     all.components[0] = [](const Vector3& x, double) { return g * x[1]; };
     problem.supports = {all};
-    const Field<3> u{space, run_to_end<3>(space, problem).displacement};
+    const Field<3> u{space, run_to_end<3>(space, problem).state.displacement};
     const Matrix<3> sigma = cauchy_at(problem, u, Vector3(0.3, 0.6, 0.5));
     recorder.relative("s12", shear_modulus * g, sigma(0, 1), homogeneous_bound);
     recorder.relative("s11", 2.0 / 3.0 * shear_modulus * g * g, sigma(0, 0), homogeneous_bound);
@@ -132,7 +133,7 @@ void inflated_tube(Recorder& recorder) {
     problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y")};
     problem.pressures = {make_pressure("inner", 0.7906356787)};
     const SpacePtr<2> space = make_space<2>(part<2>("thick_cylinder"), 4, {8, 4});
-    const Field<2> u{space, run_to_end<2>(space, problem).displacement};
+    const Field<2> u{space, run_to_end<2>(space, problem).state.displacement};
     recorder.relative("inner radius", 1.25, 1.0 + displacement_at<2>(u, Vector3(1.0, 0.0, 0.0))[0],
                       inflation_bound);
     recorder.relative("outer radius", 2.1486155550,
@@ -150,7 +151,7 @@ void inflated_sphere(Recorder& recorder) {
     problem.supports = {make_support("axis", 0.0, {}), make_support("equator", {}, 0.0)};
     problem.pressures = {make_pressure("inner", 1.5852831980)};
     const SpacePtr<2> space = make_space<2>(meridian, 4, {8, 4});
-    const Field<2> u{space, run_to_end<2>(space, problem).displacement};
+    const Field<2> u{space, run_to_end<2>(space, problem).state.displacement};
     recorder.relative("inner radius", 1.25, 1.0 + displacement_at<2>(u, Vector3(1.0, 0.0, 0.0))[0],
                       inflation_bound);
     recorder.relative("outer radius", 2.0881144020,
@@ -171,7 +172,7 @@ void dead_load_tube(Recorder& recorder) {
     SteppingOptions options;
     options.first_step = 0.05;
     options.largest_step = 0.1;
-    const Field<2> u{space, run_to_end<2>(space, problem, options).displacement};
+    const Field<2> u{space, run_to_end<2>(space, problem, options).state.displacement};
     recorder.relative("inner radius", 4.9745887,
                       1.0 + displacement_at<2>(u, Vector3(1.0, 0.0, 0.0))[0], 1e-5);
     recorder.relative("outer radius", 6.4274441,
