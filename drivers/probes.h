@@ -1,7 +1,7 @@
 #pragma once
 
 #include "drivers/summary.h"
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 #include "iga/solve/linear_static.h"
 #include "io/deck.h"
 
