@@ -8,6 +8,7 @@
 
 #include "iga/core/error.h"
 #include "iga/topology/jacobian_certificate.h"
+#include "iga/topology/multipatch_interpolate.h"
 #include "iga/topology/space.h"
 #include "tests/meshing/parts/part_probe.h"
 
@@ -199,6 +200,37 @@ TEST_CASE("half_seal: k divisions give 128 k^3 elements and change no point", "[
             const Vector3 xi(0.3, 0.6, 0.9);
             CHECK((fine.patches[p].point(xi) - coarse.patches[p].point(xi)).norm() < 1e-13 * 65.0);
         }
+    }
+}
+
+TEST_CASE(
+    "half_seal: interpolated, the volume's error falls with h^(degree + 1), planes stay plane",
+    "[parts]") {
+    const iga::MultiPatch<3> exact = make_solid_part("half_seal");
+    const double volume = exact_volume(13.0, 25.0, 40.0, 31.5, 13.0, 65.0);
+    for (int degree = 1; degree <= 3; ++degree) {
+        CAPTURE(degree);
+        const auto interpolated = [&](int divisions) {
+            return iga::interpolate<3>(
+                make_solid_part("half_seal", {{"divisions", static_cast<double>(divisions)}}),
+                degree, {});
+        };
+        const iga::MultiPatch<3> coarse = interpolated(1);
+        const iga::MultiPatch<3> fine = interpolated(2);
+        const double coarse_error = std::abs(iga::volume(coarse) - volume) / volume;
+        const double fine_error = std::abs(iga::volume(fine) - volume) / volume;
+        CHECK(coarse_error < std::pow(0.2, degree + 1));
+        CHECK(std::log2(coarse_error / fine_error) > degree + 0.7);
+        CHECK(n_elements(fine) == 1024);
+        CHECK_NOTHROW(iga::check(fine, 1e-14));
+        CHECK(iga::Space<3>(fine).is_isoparametric());
+        CHECK(fine.boundary_sets == exact.boundary_sets);
+        for (const iga::Patch<3>& patch : coarse.patches) {
+            CHECK(iga::certify(patch).validity == iga::Validity::valid);
+        }
+        CHECK(largest_on<3>(fine, "cuts", [](const VectorX& x) { return x[0]; }) < 1e-12);
+        CHECK(largest_on<3>(fine, "cap", [](const VectorX& x) { return x[0] - 65.0; }) < 1e-12);
+        CHECK(largest_on<3>(fine, "top", [](const VectorX& x) { return x[2] - 15.75; }) < 1e-12);
     }
 }
 
