@@ -95,6 +95,16 @@ MatrixX interpolate(const TensorSpace<d>& space, int dimension,
         }
         current.row(i) = value.transpose();
     }
+    return interpolate<d>(space, current);
+}
+
+template <int d>
+MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
+    if (values.rows() != space.n_basis()) {
+        throw InputError("interpolate: {} rows of values for {} functions; each takes one",
+                         values.rows(), space.n_basis());
+    }
+    MatrixX current = values;
     // Each step solves along the first index and moves it behind the others.
     for (const KnotVector& knots : space.knots) {
         const Eigen::Index n = knots.n_basis();
@@ -103,7 +113,7 @@ MatrixX interpolate(const TensorSpace<d>& space, int dimension,
         const MatrixX turned = unfolded.transpose();
         current = turned;
     }
-    const Eigen::Map<const MatrixX> unfolded(current.data(), dimension, space.n_basis());
+    const Eigen::Map<const MatrixX> unfolded(current.data(), values.cols(), space.n_basis());
     return unfolded.transpose();
 }
 
@@ -113,5 +123,8 @@ template MatrixX interpolate<2>(const TensorSpace<2>&, int,
                                 const std::function<VectorX(const Vector<2>&)>&);
 template MatrixX interpolate<3>(const TensorSpace<3>&, int,
                                 const std::function<VectorX(const Vector<3>&)>&);
+template MatrixX interpolate<1>(const TensorSpace<1>&, const MatrixX&);
+template MatrixX interpolate<2>(const TensorSpace<2>&, const MatrixX&);
+template MatrixX interpolate<3>(const TensorSpace<3>&, const MatrixX&);
 
 }  // namespace couture::iga

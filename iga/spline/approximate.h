@@ -18,4 +18,10 @@ template <int d>
 [[nodiscard]] MatrixX interpolate(const TensorSpace<d>& space, int dimension,
                                   const std::function<VectorX(const Vector<d>&)>& function);
 
+/// The same from the values themselves.
+///
+/// @param values  n_basis x dimension, row i at the Greville point of function i
+template <int d>
+[[nodiscard]] MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values);
+
 }  // namespace couture::iga
