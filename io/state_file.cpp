@@ -100,6 +100,10 @@ Json record_of(const iga::AcceptedStep<d>& step, const StateOrigin& origin) {
         {"next_step", step.state.next_step},
         {"work", step.state.work},
         {"time_direction", step.state.time_direction},
+        {"displacement_scale", step.state.displacement_scale},
+        {"n_steps", step.state.n_steps},
+        {"last_remeshing", step.state.last_remeshing},
+        {"watches_quality", step.state.watches_quality},
         {"n_remeshings", step.state.n_remeshings},
         {"step", step.step},
         {"n_cuts", step.n_cuts},
@@ -126,6 +130,10 @@ iga::AcceptedStep<d> to_step(const Json& record) {
     step.state.next_step = to_number(record.at("next_step"));
     step.state.work = to_number(record.at("work"));
     step.state.time_direction = to_number(record.at("time_direction"));
+    step.state.displacement_scale = to_number(record.at("displacement_scale"));
+    step.state.n_steps = record.at("n_steps").get<int>();
+    step.state.last_remeshing = to_number(record.at("last_remeshing"));
+    step.state.watches_quality = record.at("watches_quality").get<bool>();
     step.state.n_remeshings = record.at("n_remeshings").get<int>();
     step.step = to_number(record.at("step"));
     step.n_cuts = record.at("n_cuts").get<int>();

@@ -101,7 +101,7 @@ MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
         const MatrixX turned = unfolded.transpose();
         current = turned;
     }
-    const Eigen::Map<const MatrixX> unfolded(current.data(), dimension, space.n_basis());
+    const Eigen::Map<const MatrixX> unfolded(current.data(), values.cols(), space.n_basis());
     return unfolded.transpose();
 }
 
@@ -139,5 +139,8 @@ template MatrixX interpolate<2>(const TensorSpace<2>&, int,
                                 const std::function<VectorX(const Vector<2>&)>&);
 template MatrixX interpolate<3>(const TensorSpace<3>&, int,
                                 const std::function<VectorX(const Vector<3>&)>&);
+template MatrixX interpolate<1>(const TensorSpace<1>&, const MatrixX&);
+template MatrixX interpolate<2>(const TensorSpace<2>&, const MatrixX&);
+template MatrixX interpolate<3>(const TensorSpace<3>&, const MatrixX&);
 
 }  // namespace couture::iga
