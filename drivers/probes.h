@@ -2,8 +2,8 @@
 
 #include "drivers/summary.h"
 #include "iga/post/finite_stress.h"
-#include "iga/post/locator.h"
 #include "iga/solve/linear_static.h"
+#include "iga/topology/locator.h"
 #include "io/deck.h"
 
 namespace couture::drivers {

@@ -34,9 +34,8 @@ template <int d>
 AcceptedStep<d> run_to_end(const SpacePtr<d>& space, const Problem& problem,
                            const SteppingOptions& options = {}) {
     AcceptedStep<d> last;
-    const SteppingReport report =
-        follow_loads<d>(make_start<d>(space), problem, options,
-                        [&](const AcceptedStep<d>& step) { last = step; });
+    const SteppingReport report = follow_loads<d>(
+        make_start<d>(space), problem, options, [&](const AcceptedStep<d>& step) { last = step; });
     if (!report.finished) {
         throw SolverError("{}", report.reason);
     }
