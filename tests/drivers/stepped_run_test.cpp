@@ -46,7 +46,7 @@ tolerance = 1e-8
 
 /// A path without end: the moving face would pass through the held one.
 const std::string impossible =
-    "--set displacement.0.x=-1.5 --set stepping.smallest_step=1e-3 "
+    "--set displacement.0.x=-1.5 --set stepping.smallest_step=5e-3 "
     "--set output.probe=[]";
 
 void write_deck(const TemporaryFolder& folder, const std::string& text = block) {
@@ -200,7 +200,7 @@ TEST_CASE("couture solve: a load that is too large ends with 1 and keeps its ste
     write_deck(folder);
     const auto result = run_couture("solve block.toml --json --out a " + impossible, folder.path());
     CHECK(result.exit_code == 1);
-    CHECK_THAT(result.errors, Contains("the run did not reach its end: no equilibrium at t = ") &&
+    CHECK_THAT(result.errors, Contains("the run did not reach its end: no equilibrium") &&
                                   Contains("go on with --resume"));
     const Json summary = Json::parse(result.output);
     CHECK(summary["status"] == "not_finished");

@@ -68,7 +68,7 @@ TEST_CASE("hyperelastic deck: a good one is read", "[drivers]") {
     CHECK(deck.stepping.end == 2.0);
     CHECK(deck.stepping.first_step == 0.1);
     CHECK(deck.stepping.volumetric == iga::Volumetric::full);
-    CHECK(deck.stops == std::vector<double>{0.3, 0.5, 0.7, 1.0, 1.5});
+    CHECK(deck.stepping.stops == std::vector<double>{0.3, 0.5, 0.7, 1.0, 1.5});
     REQUIRE(deck.problem.pressures.at(0).amplitude);
     CHECK((*deck.problem.pressures[0].amplitude)(0.15) == 1.0);
     CHECK(deck.problem.pressures[0].follows_body);
