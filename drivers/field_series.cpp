@@ -9,7 +9,6 @@
 #include "drivers/result_picture.h"
 #include "drivers/state_series.h"
 #include "iga/core/error.h"
-#include "iga/post/finite_stress.h"
 #include "io/atomic_file.h"
 #include "io/vtk_writer.h"
 
@@ -125,20 +124,24 @@ bool FieldSeries<d>::has(const StepSummary& step) const {
 }
 
 template <int d>
+iga::FiniteStresses<d> FieldSeries<d>::stresses_of(const iga::AcceptedStep<d>& step) const {
+    return {deck_.problem, step.state, deck_.stepping.n_gauss_points, deck_.stepping.volumetric};
+}
+
+template <int d>
 void FieldSeries<d>::write(const iga::AcceptedStep<d>& step) const {
     const bool is_remeshing = step.remeshing.has_value();
+    const iga::FiniteStresses<d> stresses = stresses_of(step);
     if (deck_.output.vtu) {
-        const iga::FiniteFields fields = iga::project_finite_state<d>(deck_.problem, step.state);
+        const iga::FiniteFields fields = stresses.project();
         const auto arrays =
             arrays_of(step.state.displacement, fields.stress, fields.strain, fields.det_F);
         // Positions of all files are undeformed ones.
-        io::write_vtu<d>(file_of(name_, step.number, is_remeshing),
-                         *step.state.reference->undeformed(), arrays, {},
-                         {.linear = deck_.output.linear, .provenance = provenance_});
+        io::write_vtu<d>(file_of(name_, step.number, is_remeshing), *stresses.undeformed(), arrays,
+                         {}, {.linear = deck_.output.linear, .provenance = provenance_});
     }
     if (deck_.output.gauss_points) {
-        const iga::FiniteGaussPoints points = iga::gauss_point_states<d>(
-            deck_.problem, step.state, deck_.discretization.n_gauss_points);
+        const iga::FiniteGaussPoints points = stresses.at_gauss_points();
         const auto arrays =
             arrays_of(points.displacement, points.stress, points.strain, points.det_F);
         io::write_points_vtu(file_of(name_ + "_gauss", step.number, is_remeshing), points.points,
@@ -167,11 +170,11 @@ void FieldSeries<d>::write_lists(const std::vector<StepSummary>& history) const 
 
 template <int d>
 void FieldSeries<d>::draw(const iga::AcceptedStep<d>& step) const {
-    const iga::SpacePtr<d> space = step.state.reference->undeformed();
+    const iga::FiniteStresses<d> stresses = stresses_of(step);
     iga::CaseResult<d> result;
-    result.displacement = {space, step.state.displacement};
-    write_picture<d>(folder_ / (name_ + ".png"), deck_, space, result,
-                     iga::project_finite_state<d>(deck_.problem, step.state).stress);
+    result.displacement = {stresses.undeformed(), step.state.displacement};
+    write_picture<d>(folder_ / (name_ + ".png"), deck_, stresses.undeformed(), result,
+                     stresses.project().stress);
 }
 
 template <int d>

@@ -5,7 +5,7 @@
 
 #include "drivers/deck_check.h"
 #include "drivers/summary.h"
-#include "iga/solve/load_stepping.h"
+#include "iga/post/finite_stress.h"
 #include "io/deck.h"
 
 namespace couture::drivers {
@@ -35,6 +35,7 @@ class FieldSeries {
     [[nodiscard]] std::vector<std::filesystem::path> files() const;
 
   private:
+    [[nodiscard]] iga::FiniteStresses<d> stresses_of(const iga::AcceptedStep<d>& step) const;
     /// Beginnings of the files' names.
     [[nodiscard]] std::vector<std::string> stems() const;
     [[nodiscard]] std::filesystem::path file_of(const std::string& stem, int number,

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "iga/core/error.h"
-#include "iga/post/stress.h"
+#include "iga/post/finite_stress.h"
 
 namespace couture::drivers {
 
@@ -169,21 +169,20 @@ ProbeResult probe_result(const io::Probe& probe, double value) {
 }
 
 template <int d>
-double quantity_of(const iga::Problem& problem, const iga::AcceptedStep<d>& step,
-                   const io::Probe& probe, const std::optional<iga::Location<d>>& location) {
-    if (probe.quantity == "volume") {
-        return iga::deformed_volume<d>(problem, step.state);
-    }
-    if (!location) {
-        return scalar_of(probe, step);
-    }
-    if (probe.quantity.starts_with("displacement")) {
+double quantity_of(const io::Deck& deck, const iga::AcceptedStep<d>& step, const io::Probe& probe,
+                   const std::optional<iga::Location<d>>& location) {
+    if (location && probe.quantity.starts_with("displacement")) {
         const iga::Field<d> u{step.state.reference->space, step.state.displacement};
         return displacement_quantity(probe.quantity, u.value(location->patch, location->xi));
     }
-    const iga::FiniteState state =
-        iga::finite_state_at<d>(problem, step.state, location->patch, location->xi);
-    return state_quantity(probe.quantity, state.state);
+    if (!location && probe.quantity != "volume") {
+        return scalar_of(probe, step);
+    }
+    const iga::FiniteStresses<d> stresses(deck.problem, step.state, deck.stepping.n_gauss_points,
+                                          deck.stepping.volumetric);
+    return location
+               ? state_quantity(probe.quantity, stresses.at(location->patch, location->xi).state)
+               : stresses.volume();
 }
 
 template std::vector<std::optional<iga::Location<2>>> locate_probes<2>(const io::Deck&,
@@ -200,9 +199,9 @@ template double quantity_at<2>(const iga::Problem&, const iga::CaseResult<2>&, c
                                const iga::Location<2>&);
 template double quantity_at<3>(const iga::Problem&, const iga::CaseResult<3>&, const std::string&,
                                const iga::Location<3>&);
-template double quantity_of<2>(const iga::Problem&, const iga::AcceptedStep<2>&, const io::Probe&,
+template double quantity_of<2>(const io::Deck&, const iga::AcceptedStep<2>&, const io::Probe&,
                                const std::optional<iga::Location<2>>&);
-template double quantity_of<3>(const iga::Problem&, const iga::AcceptedStep<3>&, const io::Probe&,
+template double quantity_of<3>(const io::Deck&, const iga::AcceptedStep<3>&, const io::Probe&,
                                const std::optional<iga::Location<3>>&);
 
 }  // namespace couture::drivers

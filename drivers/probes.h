@@ -1,8 +1,8 @@
 #pragma once
 
 #include "drivers/summary.h"
-#include "iga/post/finite_stress.h"
 #include "iga/solve/linear_static.h"
+#include "iga/solve/load_stepping.h"
 #include "iga/topology/locator.h"
 #include "io/deck.h"
 
@@ -35,7 +35,7 @@ template <int d>
 ///
 /// @param location  on the step's mesh, for quantities of a point
 template <int d>
-[[nodiscard]] double quantity_of(const iga::Problem& problem, const iga::AcceptedStep<d>& step,
+[[nodiscard]] double quantity_of(const io::Deck& deck, const iga::AcceptedStep<d>& step,
                                  const io::Probe& probe,
                                  const std::optional<iga::Location<d>>& location);
 

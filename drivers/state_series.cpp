@@ -50,7 +50,7 @@ std::vector<fs::path> StateSeries<d>::files() const {
     std::vector<fs::path> result;
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder_, code)) {
-        if (is_state(entry.path())) {
+        if (is_state(entry.path()) && entry.is_regular_file(code)) {
             result.push_back(entry.path());
         }
     }

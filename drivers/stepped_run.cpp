@@ -107,6 +107,7 @@ class SteppedRun {
                             "again",
                             last_.state.t));
             stepping_.finished = true;
+            guard([&] { fields_.write(last_); });
         } else {
             follow();
         }
@@ -121,9 +122,9 @@ class SteppedRun {
             if (!step) {
                 log::warn(fmt::format("{}: no step ended at t = {:g}", probe.source, *probe.t));
             }
-            results.push_back(probe_result(
-                probe, step ? quantity_of<d>(deck_.problem, *step, probe, place_of(i, *step))
-                            : std::numeric_limits<double>::quiet_NaN()));
+            results.push_back(
+                probe_result(probe, step ? quantity_of<d>(deck_, *step, probe, place_of(i, *step))
+                                         : std::numeric_limits<double>::quiet_NaN()));
         }
         return results;
     }
@@ -138,7 +139,7 @@ class SteppedRun {
     [[nodiscard]] bool is_at_end() const {
         const iga::SteppingOptions& options = deck_.stepping;
         return last_.state.t >= options.end * (1.0 - time_rounding) ||
-               (options.max_steps > 0 && last_.number >= options.max_steps);
+               (options.control == iga::Control::arc_length && last_.number >= options.max_steps);
     }
 
     void add(const iga::AcceptedStep<d>& step) {
@@ -147,20 +148,10 @@ class SteppedRun {
     }
 
     void follow() {
-        iga::SteppingOptions options = deck_.stepping;
-        // Steps are numbered on from those that were resumed.
-        const int n_before = last_.number;
-        if (options.max_steps > 0) {
-            options.max_steps -= n_before;
-        }
         const int cuts_before = stepping_.n_cuts;
         const iga::SteppingReport report = iga::follow_loads<d>(
-            last_.state, deck_.problem, options,
-            [&](iga::AcceptedStep<d> step) {
-                step.number += n_before;
-                guard([&] { keep(step); });
-            },
-            remeshing_);
+            last_.state, deck_.problem, deck_.stepping,
+            [&](const iga::AcceptedStep<d>& step) { guard([&] { keep(step); }); }, remeshing_);
         stepping_.finished = report.finished;
         stepping_.reason = report.reason;
         stepping_.n_cuts = cuts_before + report.n_cuts;
@@ -198,7 +189,8 @@ class SteppedRun {
     }
 
     void finish_fields() {
-        if (!stepping_.history.empty()) {
+        // The last step is written even if it is none of those that are due.
+        if (!stepping_.history.empty() && !fields_.has(stepping_.history.back())) {
             fields_.write(last_);
         }
         fields_.write_lists(stepping_.history);
@@ -333,7 +325,7 @@ Summary run_stepped(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     summary.n_patches = geometry.n_patches();
     summary.n_interfaces = static_cast<int>(geometry.interfaces.size());
     summary.n_control_points = geometry.n_control_points();
-    summary.volume = iga::body_volume(deck.problem, geometry);
+    summary.volume = iga::body_volume(deck.problem, run.space().geometry());
     summary.n_elements = count_elements<d>(run.space());
     summary.n_unknowns = n_unknowns;
     summary.n_threads = n_threads();

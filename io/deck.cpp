@@ -264,7 +264,7 @@ Deck parse_deck(const std::string& text, const fs::path& path,
     }
     deck.stepping.newton.solver = deck.solver;
     deck.stepping.n_gauss_points = deck.discretization.n_gauss_points;
-    deck.stops = stops_of(deck, context);
+    deck.stepping.stops = stops_of(deck, context);
     deck.model_text = model_text_of(document, deck, context);
     return deck;
 }

@@ -100,10 +100,8 @@ struct Deck {
     Discretization discretization;
     iga::Problem problem;
     iga::SolverOptions solver;
-    /// Of hyperelastic decks.
+    /// Of hyperelastic decks; stops: the times of tables, probes and remeshings within the run.
     iga::SteppingOptions stepping;
-    /// Times that steps end at: those of tables, probes and remeshings within the run, increasing.
-    std::vector<double> stops;
     std::optional<RemeshingOptions> remeshing;
     OutputOptions output;
     std::vector<Probe> probes;

@@ -295,7 +295,7 @@ std::vector<double> Section::numbers(const std::string& key, const Dimension& di
 }
 
 std::vector<double> Section::number_list(const std::string& key, const Dimension& dimension,
-                                     const Range& range) {
+                                         const Range& range) {
     const TomlNode* node = find(key);
     if (node == nullptr) {
         return {};

@@ -100,8 +100,9 @@ class Section {
                                               const std::vector<int>& sizes,
                                               const Range& range = any_number);
     /// The same, of any length but 0.
-    [[nodiscard]] std::vector<double> number_list(const std::string& key, const Dimension& dimension,
-                                              const Range& range = any_number);
+    [[nodiscard]] std::vector<double> number_list(const std::string& key,
+                                                  const Dimension& dimension,
+                                                  const Range& range = any_number);
     /// A number, a text with a unit or an expression of x, y, z, t.
     [[nodiscard]] std::optional<Function> function(const std::string& key,
                                                    const Dimension& dimension);

@@ -1,6 +1,7 @@
 #include "io/hdf5_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 
@@ -28,6 +29,19 @@ Handle in_memory_access() {
     return access;
 }
 
+/// Several may be open at once, each under a name of its own.
+std::string image_name() {
+    static std::atomic<int> n_images = 0;
+    return fmt::format("image {}", n_images++);
+}
+
+/// Without the time of writing: equal contents make equal files.
+Handle data_properties() {
+    Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "properties");
+    H5Pset_obj_track_times(properties, 0);
+    return properties;
+}
+
 }  // namespace
 
 void expect(bool holds, const std::string& file, std::string_view what) {
@@ -39,7 +53,8 @@ void expect(bool holds, const std::string& file, std::string_view what) {
 Handle make_image() {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle access = in_memory_access();
-    return {H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "HDF5 in memory"};
+    return {H5Fcreate(image_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+            "HDF5 in memory"};
 }
 
 std::string image_of(hid_t store) {
@@ -55,7 +70,7 @@ Handle open_image(const std::string& file, std::string& content) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle access = in_memory_access();
     H5Pset_file_image(access, content.data(), content.size());
-    return {H5Fopen("memory", H5F_ACC_RDONLY, access), H5Fclose, file};
+    return {H5Fopen(image_name().c_str(), H5F_ACC_RDONLY, access), H5Fclose, file};
 }
 
 std::string pack_hdf5(const std::string& kind, int version, const std::string& content) {
@@ -89,9 +104,10 @@ void write_ints(hid_t group, const std::string& name, const std::vector<hsize_t>
                 const std::vector<int>& values) {
     const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                        H5Sclose, name);
-    const Handle data(H5Dcreate2(group, name.c_str(), H5T_STD_I32LE, space, H5P_DEFAULT,
-                                 H5P_DEFAULT, H5P_DEFAULT),
-                      H5Dclose, name);
+    const Handle properties = data_properties();
+    const Handle data(
+        H5Dcreate2(group, name.c_str(), H5T_STD_I32LE, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+        H5Dclose, name);
     H5Dwrite(data, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
@@ -99,8 +115,9 @@ void write_doubles(hid_t group, const std::string& name, const std::vector<hsize
                    const double* values) {
     const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                        H5Sclose, name);
+    const Handle properties = data_properties();
     const Handle data(H5Dcreate2(group, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
-                                 H5P_DEFAULT, H5P_DEFAULT),
+                                 properties, H5P_DEFAULT),
                       H5Dclose, name);
     H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
 }
@@ -132,8 +149,9 @@ Handle make_group(hid_t parent, const std::string& name) {
 void write_bytes(hid_t group, const std::string& name, std::string_view bytes) {
     const hsize_t size = bytes.size();
     const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, name);
+    const Handle properties = data_properties();
     const Handle data(
-        H5Dcreate2(group, name.c_str(), H5T_STD_U8LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dcreate2(group, name.c_str(), H5T_STD_U8LE, space, H5P_DEFAULT, properties, H5P_DEFAULT),
         H5Dclose, name);
     H5Dwrite(data, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
 }

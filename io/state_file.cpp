@@ -85,6 +85,20 @@ iga::RemeshingReport to_report(const Json& object) {
     return report;
 }
 
+/// Calls body(name, value) for all of a state but its matrices and its reference.
+template <typename State, typename Body>
+void for_state_values(State& state, const Body& body) {
+    body("t", state.t);
+    body("next_step", state.next_step);
+    body("work", state.work);
+    body("time_direction", state.time_direction);
+    body("displacement_scale", state.displacement_scale);
+    body("n_steps", state.n_steps);
+    body("n_remeshings", state.n_remeshings);
+    body("last_remeshing", state.last_remeshing);
+    body("watches_quality", state.watches_quality);
+}
+
 template <int d>
 Json record_of(const iga::AcceptedStep<d>& step, const StateOrigin& origin) {
     Json record = {
@@ -96,15 +110,6 @@ Json record_of(const iga::AcceptedStep<d>& step, const StateOrigin& origin) {
         {"program", std::string("couture ") + COUTURE_VERSION},
         {"dimension", d},
         {"number", step.number},
-        {"t", step.state.t},
-        {"next_step", step.state.next_step},
-        {"work", step.state.work},
-        {"time_direction", step.state.time_direction},
-        {"displacement_scale", step.state.displacement_scale},
-        {"n_steps", step.state.n_steps},
-        {"last_remeshing", step.state.last_remeshing},
-        {"watches_quality", step.state.watches_quality},
-        {"n_remeshings", step.state.n_remeshings},
         {"step", step.step},
         {"n_cuts", step.n_cuts},
         {"energy", step.energy},
@@ -115,6 +120,8 @@ Json record_of(const iga::AcceptedStep<d>& step, const StateOrigin& origin) {
           {"iterations", step.newton.iterations},
           {"residuals", step.newton.residuals},
           {"min_det_F", step.newton.min_det_F}}}};
+    for_state_values(step.state,
+                     [&](const char* name, const auto& value) { record["state"][name] = value; });
     if (step.remeshing) {
         record["remeshing"] = to_json(*step.remeshing);
     }
@@ -126,15 +133,9 @@ template <int d>
 iga::AcceptedStep<d> to_step(const Json& record) {
     iga::AcceptedStep<d> step;
     step.number = record.at("number").get<int>();
-    step.state.t = to_number(record.at("t"));
-    step.state.next_step = to_number(record.at("next_step"));
-    step.state.work = to_number(record.at("work"));
-    step.state.time_direction = to_number(record.at("time_direction"));
-    step.state.displacement_scale = to_number(record.at("displacement_scale"));
-    step.state.n_steps = record.at("n_steps").get<int>();
-    step.state.last_remeshing = to_number(record.at("last_remeshing"));
-    step.state.watches_quality = record.at("watches_quality").get<bool>();
-    step.state.n_remeshings = record.at("n_remeshings").get<int>();
+    for_state_values(step.state, [&](const char* name, auto& value) {
+        record.at("state").at(name).get_to(value);
+    });
     step.step = to_number(record.at("step"));
     step.n_cuts = record.at("n_cuts").get<int>();
     step.energy = to_number(record.at("energy"));

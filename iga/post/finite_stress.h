@@ -1,5 +1,6 @@
 #pragma once
 
+#include "iga/assembly/finite_strain.h"
 #include "iga/mechanics/problem.h"
 #include "iga/post/stress.h"
 #include "iga/solve/load_stepping.h"
@@ -16,16 +17,6 @@ struct FiniteState {
     StressState state;
 };
 
-/// State at a point of a patch of the reference's mesh: F = (I + grad(U - U_b)) F_b.
-///
-/// @param problem  all materials hyperelastic
-/// @throws GeometryError  where the map is singular
-///
-/// Source: [Maquart19] Eq. (7.3).
-template <int d>
-[[nodiscard]] FiniteState finite_state_at(const Problem& problem, const SteppingState<d>& state,
-                                          int patch, const Vector<d>& xi);
-
 /// Smooth fields by L2 projection onto the displacement's space; continuous over all patches: at a
 /// jump of material they show the mean.
 struct FiniteFields {
@@ -35,9 +26,6 @@ struct FiniteFields {
     /// n_dofs x 1.
     MatrixX det_F;
 };
-template <int d>
-[[nodiscard]] FiniteFields project_finite_state(const Problem& problem,
-                                                const SteppingState<d>& state);
 
 /// The state at the Gauss points of all elements.
 struct FiniteGaussPoints {
@@ -51,14 +39,38 @@ struct FiniteGaussPoints {
     /// 2^d neighbouring points of one element each, in the order of VTK's quads and hexahedra.
     std::vector<std::vector<int>> cells;
 };
-/// @param n_gauss_points  per direction and element; nothing: degree + 1
-template <int d>
-[[nodiscard]] FiniteGaussPoints gauss_point_states(const Problem& problem,
-                                                   const SteppingState<d>& state,
-                                                   std::optional<int> n_gauss_points = {});
 
-/// Volume of the deformed body: with the thickness of plane problems, or of the full ring.
+/// Stresses and strains of a hyperelastic body in one state, with the pressure that its equilibrium
+/// has where the volumetric energy is projected.
+///
+/// Source: [Maquart19] Eq. (7.3) for bodies that were meshed again.
 template <int d>
-[[nodiscard]] double deformed_volume(const Problem& problem, const SteppingState<d>& state);
+class FiniteStresses {
+  public:
+    /// @param problem  must outlive this
+    /// @param n_gauss_points, volumetric  as the state was computed with
+    /// @throws InputError, GeometryError  as `FiniteStrain`
+    FiniteStresses(const Problem& problem, const SteppingState<d>& state,
+                   std::optional<int> n_gauss_points = {},
+                   Volumetric volumetric = Volumetric::automatic);
+
+    /// State at a parameter of a patch of the state's mesh.
+    /// @throws GeometryError  where the map is singular
+    [[nodiscard]] FiniteState at(int patch, const Vector<d>& xi) const;
+    [[nodiscard]] FiniteFields project() const;
+    [[nodiscard]] FiniteGaussPoints at_gauss_points() const;
+    /// Of the deformed body: with the thickness of plane problems, or of the full ring.
+    [[nodiscard]] double volume() const;
+    /// The undeformed body in the patches of the state's mesh.
+    [[nodiscard]] const SpacePtr<d>& undeformed() const { return undeformed_; }
+
+  private:
+    const Problem& problem_;
+    ReferencePtr<d> reference_;
+    SpacePtr<d> undeformed_;
+    MatrixX displacement_;
+    std::optional<int> n_gauss_points_;
+    FiniteStrain<d> body_;
+};
 
 }  // namespace couture::iga

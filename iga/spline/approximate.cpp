@@ -92,7 +92,6 @@ MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
                          space.n_basis());
     }
     MatrixX current = values;
-    const Eigen::Index dimension = values.cols();
     // Each step solves along the first index and moves it behind the others.
     for (const KnotVector& knots : space.knots) {
         const Eigen::Index n = knots.n_basis();
@@ -139,8 +138,5 @@ template MatrixX interpolate<2>(const TensorSpace<2>&, int,
                                 const std::function<VectorX(const Vector<2>&)>&);
 template MatrixX interpolate<3>(const TensorSpace<3>&, int,
                                 const std::function<VectorX(const Vector<3>&)>&);
-template MatrixX interpolate<1>(const TensorSpace<1>&, const MatrixX&);
-template MatrixX interpolate<2>(const TensorSpace<2>&, const MatrixX&);
-template MatrixX interpolate<3>(const TensorSpace<3>&, const MatrixX&);
 
 }  // namespace couture::iga

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -43,7 +46,7 @@ tolerance = 1e-8
 
 /// A path without end: the moving face would pass through the held one.
 const std::string impossible =
-    "--set displacement.0.x=-1.5 --set stepping.smallest_step=1e-3 "
+    "--set displacement.0.x=-1.5 --set stepping.smallest_step=5e-3 "
     "--set output.probe=[]";
 
 void write_deck(const TemporaryFolder& folder, const std::string& text = block) {
@@ -147,12 +150,16 @@ TEST_CASE("couture solve --resume: killed at any moment", "[drivers]") {
     const TemporaryFolder folder;
     write_deck(folder);
     REQUIRE(run_couture("solve block.toml --out a", folder.path()).exit_code == 0);
-    for (const char* delay : {"0.1", "0.25", "0.4", "0.6"}) {
-        CAPTURE(delay);
+    // As soon as one of these is there.
+    for (const char* moment :
+         {"block_0001.vtu", "states/0003.h5", "block_0006.vtu", "block.json"}) {
+        CAPTURE(moment);
         fs::remove_all(folder.path() / "b");
-        static_cast<void>(run_couture("solve block.toml --out b & pid=$!; sleep " +
-                                          std::string(delay) + "; kill -KILL $pid; wait $pid",
-                                      folder.path()));
+        static_cast<void>(run_couture(
+            fmt::format("solve block.toml --out b & pid=$!; while [ ! -e b/{} ]; do sleep 0.002; "
+                        "done; kill -KILL $pid; wait $pid",
+                        moment),
+            folder.path()));
         const auto rest = run_couture("solve block.toml --out b --resume", folder.path());
         CAPTURE(rest.errors);
         CHECK(rest.exit_code == 0);
@@ -193,7 +200,7 @@ TEST_CASE("couture solve: a load that is too large ends with 1 and keeps its ste
     write_deck(folder);
     const auto result = run_couture("solve block.toml --json --out a " + impossible, folder.path());
     CHECK(result.exit_code == 1);
-    CHECK_THAT(result.errors, Contains("the run did not reach its end: no equilibrium at t = ") &&
+    CHECK_THAT(result.errors, Contains("the run did not reach its end: no equilibrium") &&
                                   Contains("go on with --resume"));
     const Json summary = Json::parse(result.output);
     CHECK(summary["status"] == "not_finished");
@@ -255,7 +262,7 @@ TEST_CASE("couture solve: a load that follows a table, one that follows t", "[dr
     const TemporaryFolder folder;
     std::string table = block;
     table.replace(table.find("x = 0.5"), 7, "x = 0.5\namplitude = \"there and back\"");
-    table.replace(table.find("expect = 4.1282217920\ntolerance = 1e-8"), 39,
+    table.replace(table.find("expect = 4.1282217920\ntolerance = 1e-8"), 38,
                   "expect = 0.0\nabsolute_tolerance = 1e-9");
     write_deck(folder, table +
                            "[amplitude.'there and back']\nt = [0, 0.5, 1]\nvalue = [0, 1, 0]\n"

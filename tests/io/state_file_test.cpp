@@ -35,7 +35,11 @@ iga::AcceptedStep<2> some_step() {
     step.state.next_step = 1.0 / 3.0;
     step.state.work = -2.0 / 7.0;
     step.state.time_direction = 0.7;
+    step.state.displacement_scale = 1.0 / 11.0;
+    step.state.n_steps = 12;
     step.state.n_remeshings = 2;
+    step.state.last_remeshing = 0.1;
+    step.state.watches_quality = false;
     step.state.reference = iga::make_reference<2>(std::make_shared<const iga::Space<2>>(square()));
     step.state.displacement = some_matrix(4, 2);
     step.state.direction = some_matrix(4, 2);
@@ -65,7 +69,11 @@ TEST_CASE("state file: everything comes back with every digit", "[io]") {
     CHECK(back.state.next_step == step.state.next_step);
     CHECK(back.state.work == step.state.work);
     CHECK(back.state.time_direction == step.state.time_direction);
+    CHECK(back.state.displacement_scale == step.state.displacement_scale);
+    CHECK(back.state.n_steps == 12);
     CHECK(back.state.n_remeshings == 2);
+    CHECK(back.state.last_remeshing == 0.1);
+    CHECK_FALSE(back.state.watches_quality);
     CHECK(back.state.displacement == step.state.displacement);
     CHECK(back.state.direction == step.state.direction);
     CHECK(back.number == 12);

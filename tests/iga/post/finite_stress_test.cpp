@@ -47,7 +47,7 @@ Vector<6> voigt(double xx, double yy, double zz, double yz, double xz, double xy
 
 }  // namespace
 
-TEST_CASE("finite_state_at: uniaxial tension has its closed form", "[post]") {
+TEST_CASE("FiniteStresses: uniaxial tension has its closed form", "[post]") {
     const double stretch = 1.5;
     const double lateral = 0.8441183553;
     MultiPatch<3> block;
@@ -56,17 +56,17 @@ TEST_CASE("finite_state_at: uniaxial tension has its closed form", "[post]") {
     state.displacement =
         affine<3>(*state.reference->space, Vector3(stretch, lateral, lateral).asDiagonal());
     const Problem problem = rubber(Kinematics::solid);
-    const FiniteState here = finite_state_at<3>(problem, state, 0, Vector3(0.2, 0.7, 0.4));
+    const FiniteState here = FiniteStresses<3>(problem, state).at(0, Vector3(0.2, 0.7, 0.4));
     CHECK(here.det_F == Approx(stretch * lateral * lateral).epsilon(rounding));
     CHECK(here.state.stress[0] == Approx(4.1282217920).epsilon(printed));
     CHECK(here.state.stress.tail<5>().cwiseAbs().maxCoeff() < 1e-8);
     const double E = 0.5 * (lateral * lateral - 1.0);
     CHECK((here.state.strain - voigt(0.625, E, E, 0.0, 0.0, 0.0)).norm() < rounding);
-    CHECK(deformed_volume<3>(problem, state) ==
+    CHECK(FiniteStresses<3>(problem, state).volume() ==
           Approx(6.0 * stretch * lateral * lateral).epsilon(rounding));
 }
 
-TEST_CASE("finite_state_at: simple shear has engineering shear strains", "[post]") {
+TEST_CASE("FiniteStresses: simple shear has engineering shear strains", "[post]") {
     constexpr double g = 0.8;
     MultiPatch<3> block;
     block.patches = {make_box<3>(Vector3(1.0, 1.0, 1.0))};
@@ -75,26 +75,26 @@ TEST_CASE("finite_state_at: simple shear has engineering shear strains", "[post]
     F(0, 1) = g;
     state.displacement = affine<3>(*state.reference->space, F);
     const FiniteState here =
-        finite_state_at<3>(rubber(Kinematics::solid), state, 0, Vector3(0.5, 0.5, 0.5));
+        FiniteStresses<3>(rubber(Kinematics::solid), state).at(0, Vector3(0.5, 0.5, 0.5));
     CHECK(here.state.stress[5] == Approx(3.0 * g).epsilon(rounding));
     CHECK(here.state.stress[0] == Approx(2.0 * g * g).epsilon(rounding));
     CHECK(here.state.stress[1] == Approx(-g * g).epsilon(rounding));
     CHECK((here.state.strain - voigt(0.0, 0.5 * g * g, 0.0, 0.0, 0.0, g)).norm() < rounding);
 }
 
-TEST_CASE("finite_state_at: a ring that widens has its hoop stretch, also on the axis", "[post]") {
+TEST_CASE("FiniteStresses: a ring that widens has its hoop stretch, also on the axis", "[post]") {
     MultiPatch<2> disk;
     disk.patches = {make_box<2>(Vector2(2.0, 1.0))};
     SteppingState<2> state = make_start<2>(std::make_shared<const Space<2>>(disk));
     state.displacement = affine<2>(*state.reference->space, Vector2(1.25, 0.9).asDiagonal());
     const Problem problem = rubber(Kinematics::axisymmetric);
     for (const double r : {0.0, 0.3}) {
-        const FiniteState here = finite_state_at<2>(problem, state, 0, Vector2(r, 0.5));
+        const FiniteState here = FiniteStresses<2>(problem, state).at(0, Vector2(r, 0.5));
         CHECK((here.H.diagonal() - Vector3(0.25, -0.1, 0.25)).norm() < rounding);
     }
 }
 
-TEST_CASE("finite_state_at: a reference that is deformed already changes nothing", "[post]") {
+TEST_CASE("FiniteStresses: a reference that is deformed already changes nothing", "[post]") {
     Matrix<3> first;
     first << 1.2, 0.3, 0.0, -0.1, 0.9, 0.2, 0.0, 0.1, 1.1;
     Matrix<3> all;
@@ -119,20 +119,21 @@ TEST_CASE("finite_state_at: a reference that is deformed already changes nothing
 
     const Problem problem = rubber(Kinematics::solid);
     const Vector3 xi(0.3, 0.6, 0.1);
-    const FiniteState a = finite_state_at<3>(problem, direct, 0, xi);
-    const FiniteState b = finite_state_at<3>(problem, later, 0, xi);
+    const FiniteState a = FiniteStresses<3>(problem, direct).at(0, xi);
+    const FiniteState b = FiniteStresses<3>(problem, later).at(0, xi);
     CHECK((a.H - (all - Matrix<3>::Identity())).norm() < rounding);
     CHECK((a.H - b.H).norm() < rounding);
     CHECK((a.state.stress - b.state.stress).norm() < 1e-10);
-    CHECK(deformed_volume<3>(problem, later) == Approx(all.determinant()).epsilon(rounding));
-    const FiniteGaussPoints one = gauss_point_states<3>(problem, direct);
-    const FiniteGaussPoints two = gauss_point_states<3>(problem, later);
+    CHECK(FiniteStresses<3>(problem, later).volume() ==
+          Approx(all.determinant()).epsilon(rounding));
+    const FiniteGaussPoints one = FiniteStresses<3>(problem, direct).at_gauss_points();
+    const FiniteGaussPoints two = FiniteStresses<3>(problem, later).at_gauss_points();
     CHECK((one.points - two.points).norm() < rounding);
     CHECK((one.displacement - two.displacement).norm() < rounding);
     CHECK((one.stress - two.stress).norm() < 1e-9);
 }
 
-TEST_CASE("project_finite_state: uniform states are kept", "[post]") {
+TEST_CASE("FiniteStresses: projected uniform states are kept", "[post]") {
     MultiPatch<2> block;
     block.patches = {make_box<2>(Vector2(1.0, 1.0))};
     const SpacePtr<2> space =
@@ -140,26 +141,26 @@ TEST_CASE("project_finite_state: uniform states are kept", "[post]") {
     SteppingState<2> state = make_start<2>(space);
     state.displacement = affine<2>(*space, Vector2(1.5, 1.0).asDiagonal());
     const Problem problem = rubber(Kinematics::plane_strain);
-    const FiniteState here = finite_state_at<2>(problem, state, 0, Vector2(0.5, 0.5));
-    const FiniteFields fields = project_finite_state<2>(problem, state);
+    const FiniteState here = FiniteStresses<2>(problem, state).at(0, Vector2(0.5, 0.5));
+    const FiniteFields fields = FiniteStresses<2>(problem, state).project();
     CHECK((fields.stress.rowwise() - here.state.stress.transpose()).norm() < projection_error);
     CHECK((fields.strain.rowwise() - here.state.strain.transpose()).norm() < projection_error);
     CHECK((fields.det_F.array() - 1.5).matrix().norm() < projection_error);
 
-    const FiniteGaussPoints points = gauss_point_states<2>(problem, state);
+    const FiniteGaussPoints points = FiniteStresses<2>(problem, state).at_gauss_points();
     CHECK(points.points.rows() == 9 * 6);
     CHECK(points.cells.size() == 4 * 6);
     CHECK(points.cells.front() == std::vector<int>{0, 1, 10, 9});
     CHECK((points.displacement.col(0) - 0.5 * points.points.col(0)).norm() < rounding);
 }
 
-TEST_CASE("finite_state_at: a linear material is named", "[post]") {
+TEST_CASE("FiniteStresses: a linear material is named", "[post]") {
     MultiPatch<2> block;
     block.patches = {make_box<2>(Vector2(1.0, 1.0))};
     Problem problem;
     problem.kinematics = Kinematics::plane_strain;
     problem.materials = {make_isotropic("steel", 1.0, 0.3)};
     const SteppingState<2> state = make_start<2>(std::make_shared<const Space<2>>(block));
-    CHECK_THROWS_WITH(finite_state_at<2>(problem, state, 0, Vector2(0.5, 0.5)),
-                      Contains("[material.steel]: stresses at finite strain need a hyperelastic"));
+    CHECK_THROWS_WITH(FiniteStresses<2>(problem, state).at(0, Vector2(0.5, 0.5)),
+                      Contains("[material.steel] of patch 0 is linear elastic"));
 }
