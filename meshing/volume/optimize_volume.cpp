@@ -291,6 +291,7 @@ OptimizedVolume optimize_volume(const MultiPatch<3>& deformed, const BoundaryFea
     }
     const iga::DofMap& dofs = features.dofs();
     std::vector<int> orientations;
+    orientations.reserve(deformed.patches.size());
     for (int p = 0; p < deformed.n_patches(); ++p) {
         orientations.push_back(features.orientation(p));
     }
