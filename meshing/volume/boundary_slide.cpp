@@ -21,7 +21,7 @@ namespace {
 constexpr double flatness = 1e-10;
 constexpr int max_newton_steps = 40;
 /// Steps below this part of the coordinates end a descent.
-constexpr double rounding = 1e-15;
+constexpr double rounding = 1e-13;
 
 /// Extent of points (columns) along their principal axes, ascending, and the axes.
 struct PrincipalAxes {
@@ -69,6 +69,12 @@ Foot<e> descend(const Patch<e>& patch, const Vector3& x, Vector<e> xi) {
         }
         const double distance = (point - x).norm();
         if (distance > foot.distance) {
+            // Near the foot rounding decides whether a step is downhill.
+            foot.has_converged =
+                (point - foot.x).norm() <= 1e3 * rounding * x.cwiseAbs().maxCoeff();
+            if (foot.has_converged) {
+                break;
+            }
             step *= 0.5;
             continue;
         }

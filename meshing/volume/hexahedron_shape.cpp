@@ -12,9 +12,12 @@ namespace {
 /// Corners around each face, so that the normal of the diagonals 0-2 and 1-3 points outwards.
 constexpr int face_corners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-/// Exponent of the power means: a larger one is closer to the extremes, but harder to minimise.
-constexpr double mean_power = 8.0;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// x^4, and so on: the power means have exponent 8, a larger one is closer to the extremes, but
+/// harder to minimise.
+double fourth_power(double x) { return x * x * (x * x); }
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 struct Face {
     Vector3 to_center;
@@ -62,7 +65,7 @@ SmoothShapeRatio smooth_shape_ratio(const Hexahedron& corners, int orientation) 
     Hexahedron dA = Hexahedron::Zero();  // by the arms, of sum_a / m
     for (int i = 0; i < 8; ++i) {
         const double squared = arms.col(i).squaredNorm() / (scale * scale);
-        const double power = std::pow(squared, 0.5 * mean_power);
+        const double power = fourth_power(squared);
         sum_a += power;
         if (squared > 0.0) {
             dA.col(i) = power / squared / (scale * scale) * arms.col(i);
@@ -78,7 +81,7 @@ SmoothShapeRatio smooth_shape_ratio(const Hexahedron& corners, int orientation) 
         if (!(b > 0.0)) {
             return result;
         }
-        const double power = std::pow(b, -mean_power);
+        const double power = 1.0 / fourth_power(b * b);
         sum_b += power;
         const double factor = -power / b / scale;
         const Vector3 normal = orientation * face.area / area;
@@ -97,8 +100,7 @@ SmoothShapeRatio smooth_shape_ratio(const Hexahedron& corners, int orientation) 
         dB.col(c[1]) -= by_b;
         dB_centroid -= factor * normal;
     }
-    result.value = std::pow(sum_a / 8.0, 1.0 / mean_power) *
-                   std::pow(sum_b / 6.0, 1.0 / mean_power) / std::numbers::sqrt3;
+    result.value = eighth_root(sum_a / 8.0 * (sum_b / 6.0)) / std::numbers::sqrt3;
     const Vector3 dA_centroid = -dA.rowwise().sum();
     const Vector3 shared = (dA_centroid / sum_a + dB_centroid / sum_b) / 8.0;
     result.gradient = result.value * ((dA / sum_a + dB / sum_b).colwise() + shared);

@@ -22,12 +22,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Far from the optimum a small power of the plain mean ratio converges in few steps; growing
 /// powers then lower the worst elements.
-constexpr std::array<ShapeMeasure, 4> measures{{{.power = 2.0, .shape_ratio_weight = 0.0},
-                                                {.power = 4.0, .shape_ratio_weight = 1.0},
-                                                {.power = 8.0, .shape_ratio_weight = 1.0},
-                                                {.power = 16.0, .shape_ratio_weight = 1.0}}};
+constexpr std::array<ShapeMeasure, 4> measures{{{.power = 2, .shape_ratio_weight = 0.0},
+                                                {.power = 4, .shape_ratio_weight = 1.0},
+                                                {.power = 8, .shape_ratio_weight = 1.0},
+                                                {.power = 16, .shape_ratio_weight = 1.0}}};
 /// What is reported as energy.
-constexpr ShapeMeasure reported_measure{.power = 2.0, .shape_ratio_weight = 0.0};
+constexpr ShapeMeasure reported_measure{.power = 2, .shape_ratio_weight = 0.0};
 /// All but the last need not be minimised exactly.
 constexpr double first_tolerance = 0.02;
 /// Part of the start's worst scaled Jacobian that must be left: it is often that of the angle
@@ -74,13 +74,16 @@ MultiPatch<3> with_points(const MultiPatch<3>& volume, const iga::DofMap& dofs,
     return result;
 }
 
-/// The worst certificate of all patches.
+/// The worst certificate of all patches, or the first that is worse than degenerate.
 iga::Validity validity(const MultiPatch<3>& volume) {
-    std::vector<iga::Validity> found(volume.n_patches());
-    for (int p = 0; p < volume.n_patches(); ++p) {
-        found[p] = iga::certify<3>(volume.patches[p]).validity;
+    iga::Validity worst = iga::Validity::valid;
+    for (const iga::Volume& patch : volume.patches) {
+        worst = std::max(worst, iga::certify<3>(patch).validity);
+        if (worst > iga::Validity::degenerate) {
+            break;
+        }
     }
-    return *std::max_element(found.begin(), found.end());
+    return worst;
 }
 
 /// State of the minimisation.
@@ -252,7 +255,7 @@ void unfold(ShapeEnergy& energy, Minimizer& minimizer, const MatrixX& start, int
     double regularization = first_regularization;
     ShapeSummary worst = energy.summary(points);
     for (int i = 0; i < max_rounds && worst.min_inverse_mean_ratio < unfolded; ++i) {
-        minimizer.start(points, {.power = 1.0, .regularization = regularization});
+        minimizer.start(points, {.power = 1, .regularization = regularization});
         report.untangling_rounds += minimizer.round() ? 1 : 0;
         points = minimizer.points();
         worst = energy.summary(points);
@@ -288,6 +291,7 @@ OptimizedVolume optimize_volume(const MultiPatch<3>& deformed, const BoundaryFea
     }
     const iga::DofMap& dofs = features.dofs();
     std::vector<int> orientations;
+    orientations.reserve(deformed.patches.size());
     for (int p = 0; p < deformed.n_patches(); ++p) {
         orientations.push_back(features.orientation(p));
     }
@@ -342,19 +346,26 @@ OptimizedVolume optimize_volume(const MultiPatch<3>& deformed, const BoundaryFea
         points = minimizer.points();
     }
 
-    // The best by shape ratio whose certificate holds.
-    const iga::Validity before = validity(deformed);
-    const iga::Validity needed = std::min(before, iga::Validity::degenerate);
-    if (before <= needed) {
-        states.insert(states.begin(), {start, summary.max_shape_ratio});
-    }
+    // The best by shape ratio whose certificate holds, or is as good as that of the start, which
+    // comes last.
     std::stable_sort(states.begin(), states.end(),
                      [](const State& a, const State& b) { return a.shape_ratio < b.shape_ratio; });
+    while (summary.min_inverse_mean_ratio >= unfolded && !states.empty() &&
+           states.back().shape_ratio >= summary.max_shape_ratio) {
+        states.pop_back();
+    }
+    states.push_back({start, summary.max_shape_ratio});
+    // A certificate costs as much as some rounds, and neighbours share their fate: in growing
+    // steps.
     bool is_found = false;
-    for (std::size_t i = 0; i < states.size() && !is_found; ++i) {
+    std::size_t step = 1;
+    for (std::size_t i = 0; i < states.size() && !is_found; step *= 2) {
         points = states[i].points;
         result.volume = with_points(deformed, dofs, points);
-        is_found = validity(result.volume) <= needed;
+        const iga::Validity found = validity(result.volume);
+        is_found = found == iga::Validity::valid ||
+                   (found == iga::Validity::degenerate && validity(deformed) >= found);
+        i = i + 1 == states.size() ? states.size() : std::min(i + step, states.size() - 1);
     }
     if (!is_found) {
         throw GeometryError(

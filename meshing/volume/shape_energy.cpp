@@ -39,7 +39,19 @@ void for_each(int n, const std::function<void(int)>& body) {
     }
 }
 
-double element_size_cubed(const Matrix<3>& J) { return std::pow(J.squaredNorm() / 3.0, 1.5); }
+double integer_power(double x, int power) {
+    double result = 1.0;
+    for (; power > 0; power >>= 1) {
+        result *= (power & 1) != 0 ? x : 1.0;
+        x *= x;
+    }
+    return result;
+}
+
+double element_size_cubed(const Matrix<3>& J) {
+    const double squared = J.squaredNorm() / 3.0;
+    return squared * std::sqrt(squared);
+}
 
 /// 1 / mean ratio, negative where folded; 0 for a zero matrix.
 double inverse_mean_ratio(const Matrix<3>& J, int orientation) {
@@ -54,7 +66,7 @@ struct SampleEnergy {
 };
 
 /// @param delta  added to det J, see ShapeMeasure::regularization
-SampleEnergy sample_energy(const Matrix<3>& J, int orientation, double power, double delta) {
+SampleEnergy sample_energy(const Matrix<3>& J, int orientation, int power, double delta) {
     SampleEnergy result;
     Matrix<3> cofactor;
     cofactor.col(0) = J.col(1).cross(J.col(2));
@@ -71,7 +83,7 @@ SampleEnergy sample_energy(const Matrix<3>& J, int orientation, double power, do
         return result;
     }
     const double mu = squared * std::sqrt(squared) / (cube_ratio * h);
-    result.value = std::pow(mu, power);
+    result.value = integer_power(mu, power);
     // d ln h / d det = 1 / root, with root = det for delta = 0.
     result.by_J = power * result.value * (3.0 / squared * J - orientation / root * cofactor);
     return result;
@@ -341,7 +353,7 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
             data.breakpoints[k] = knots.breakpoints();
             n_elements *= knots.n_elements();
             const std::array<std::vector<double>, 2> samples{
-                std::vector<double>{0.0, 1.0}, iga::gauss_rule(std::max(knots.degree(), 2)).points};
+                std::vector<double>{0.0, 1.0}, iga::gauss_rule(knots.degree() + 1).points};
             for (int kind = 0; kind < 2; ++kind) {
                 iga::BasisTable table = tabulate(knots, data.breakpoints[k], samples[kind]);
                 const std::size_t per_element = table.derivatives.size() / knots.n_elements();
@@ -424,7 +436,7 @@ double ShapeEnergy::evaluate(const MatrixX& points, const ShapeMeasure& measure,
             if (measure.shape_ratio_weight > 0.0 && singular == 0 && sum < infinity) {
                 const SmoothShapeRatio ratio =
                     smooth_shape_ratio(element.corners(), element.orientation());
-                const double power = std::pow(ratio.value, measure.power);
+                const double power = integer_power(ratio.value, measure.power);
                 sum += measure.shape_ratio_weight * power;
                 for (int q = 0; q < 8 && power < infinity; ++q) {
                     element.add_by_corner(q, measure.shape_ratio_weight * measure.power * power /

@@ -12,7 +12,7 @@ namespace couture::meshing {
 /// What a ShapeEnergy measures.
 struct ShapeMeasure {
     /// Exponent of the mean ratio and the shape ratio: the larger, the more the worst count.
-    double power = 2.0;
+    int power = 2;
     /// Part of the shape ratio of the elements' corners beside the mean ratio.
     double shape_ratio_weight = 0.0;
     /// 0: infinite for folded elements. Else det J is replaced by
@@ -43,7 +43,7 @@ struct ShapeSummary {
 ///
 /// E = mean over elements of (mean over samples of mu^power + weight (S / sqrt(3))^power), mu =
 /// |J|^3 / (3 sqrt(3) det J) the inverse mean ratio of the map from the unit cube to the element,
-/// sampled at the element's corners and max(degree, 2)^3 Gauss points, S the smooth shape ratio of
+/// sampled at the element's corners and (degree + 1)^3 Gauss points, S the smooth shape ratio of
 /// its corners. 1 + weight for cubes, independent of size. Corner samples at which `geometry` is
 /// singular (collapsed sides, corners with a straight angle) are left out, and such elements have
 /// no S. Sums run in a fixed order: results do not depend on the number of threads.

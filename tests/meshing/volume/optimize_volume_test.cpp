@@ -107,6 +107,32 @@ TEST_CASE("optimize_volume: points slide in plane faces across patches, corners 
     }
 }
 
+TEST_CASE("optimize_volume: a sheared block, whose sharp edges bound the shape ratio", "[volume]") {
+    // No element at an edge of angle theta can have a shape ratio below 1 / sin(theta / 2).
+    const double gamma = 1.5;
+    const double bound = 1.0 / std::sin(0.5 * std::atan(1.0 / gamma));
+    const MultiPatch<3> cube = cube_of(1, 8);
+    const MultiPatch<3> sheared =
+        moved(cube, [&](const Vector3& x) { return Vector3(x[0] + gamma * x[2], x[1], x[2]); });
+    const OptimizedVolume result = optimize_volume(sheared, BoundaryFeatures(cube));
+    const VolumeOptimizationReport& report = result.report;
+    CAPTURE(bound, report.before.max_shape_ratio, report.after.max_shape_ratio);
+    CHECK(report.after.max_shape_ratio > bound);
+    CHECK(report.after.max_shape_ratio < 0.88 * report.before.max_shape_ratio);
+    CHECK(report.energy_after < 0.7 * report.energy_before);
+    CHECK(report.after.min_scaled_jacobian > 0.97 * report.before.min_scaled_jacobian);
+    CHECK(std::abs(report.volume_change) < rounding);
+}
+
+TEST_CASE("optimize_volume: a state that can't be bettered is returned as it is", "[volume]") {
+    const MultiPatch<3> cube = cube_of(2, 3);
+    const BoundaryFeatures features(cube);
+    const OptimizedVolume result = optimize_volume(cube, features);
+    CHECK((points_of(result.volume, features.dofs()) - points_of(cube, features.dofs()))
+              .cwiseAbs()
+              .maxCoeff() < rounding);
+}
+
 TEST_CASE("optimize_volume: a boundary that must not slide stays", "[volume]") {
     const MultiPatch<3> cube = cube_of(1, 5);
     const MultiPatch<3> deformed = moved(cube, crowded);

@@ -62,8 +62,8 @@ void check_gradient(const Case& c, const MatrixX& points, const ShapeMeasure& me
 TEST_CASE("ShapeEnergy: 1 + weight for cubes of any size", "[volume]") {
     for (const int degree : {1, 2, 3}) {
         const Case c(cube_of(degree, 3));
-        CHECK(c.energy.value(c.points, {.power = 3.0}) == Approx(1.0).epsilon(rounding));
-        CHECK(c.energy.value(7.0 * c.points, {.power = 3.0, .shape_ratio_weight = 0.5}) ==
+        CHECK(c.energy.value(c.points, {.power = 3}) == Approx(1.0).epsilon(rounding));
+        CHECK(c.energy.value(7.0 * c.points, {.power = 3, .shape_ratio_weight = 0.5}) ==
               Approx(1.5).epsilon(rounding));
     }
 }
@@ -77,16 +77,16 @@ TEST_CASE("ShapeEnergy: mean ratio of stretched and sheared boxes in closed form
         cube_of(2, 2), [&](const Vector3& x) { return Vector3(x[0] + gamma * x[2], x[1], x[2]); });
     const Case a(stretched);
     const Case b(sheared);
-    CHECK(a.energy.value(a.points, {.power = 1.0}) ==
+    CHECK(a.energy.value(a.points, {.power = 1}) ==
           Approx(std::pow(21.0 / 3.0, 1.5) / 8.0).epsilon(rounding));
-    CHECK(b.energy.value(b.points, {.power = 2.0}) ==
+    CHECK(b.energy.value(b.points, {.power = 2}) ==
           Approx(std::pow((3.0 + gamma * gamma) / 3.0, 3.0)).epsilon(rounding));
     CHECK(b.energy.summary(b.points).min_scaled_jacobian ==
           Approx(1.0 / std::sqrt(1.0 + gamma * gamma)).epsilon(rounding));
 }
 
 TEST_CASE("ShapeEnergy: gradient by differences", "[volume]") {
-    const ShapeMeasure measure{.power = 3.0, .shape_ratio_weight = 0.7};
+    const ShapeMeasure measure{.power = 3, .shape_ratio_weight = 0.7};
     for (const int degree : {1, 2, 3}) {
         const Case c(cube_of(degree, 3));
         check_gradient(c, c.points + noise(c.features.dofs().n_dofs, 0.03), measure);
@@ -102,8 +102,8 @@ TEST_CASE("ShapeEnergy: regularised, it is finite and smooth where elements fold
     const Case c(cube_of(1, 3));
     const MatrixX folded = c.points + noise(c.features.dofs().n_dofs, 0.3);
     CHECK(c.energy.summary(folded).min_inverse_mean_ratio < 0.0);
-    CHECK(std::isinf(c.energy.value(folded, {.power = 1.0})));
-    check_gradient(c, folded, {.power = 1.0, .regularization = 0.3});
+    CHECK(std::isinf(c.energy.value(folded, {.power = 1})));
+    check_gradient(c, folded, {.power = 1, .regularization = 0.3});
 }
 
 TEST_CASE("ShapeEnergy: the summary names the worst place", "[volume]") {
