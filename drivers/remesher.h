@@ -7,7 +7,7 @@ namespace couture::drivers {
 
 /// When the body of a hyperelastic deck is meshed again, and how; never without [remeshing].
 ///
-/// @param geometry  the undeformed body
+/// @param geometry  the undeformed body in the functions of the displacement
 /// @throws InputError  if the deck asks for a remeshing of what can't be meshed again
 template <int d>
 [[nodiscard]] iga::Remeshing<d> make_remeshing(const io::Deck& deck,

@@ -59,8 +59,8 @@ class SteppedRun {
         : deck_(deck),
           geometry_(geometry),
           locations_(locate_probes<d>(deck, geometry)),
-          remeshing_(make_remeshing<d>(deck, geometry)),
           space_(make_space<d>(deck, geometry)),
+          remeshing_(make_remeshing<d>(deck, space_->geometry())),
           start_(iga::make_start<d>(space_)),
           states_(folder / "states", origin_of(deck, iga::signature(geometry)), start_.reference),
           fields_(deck, geometry, certificate, folder) {
@@ -242,8 +242,8 @@ class SteppedRun {
     const io::Deck& deck_;
     const iga::MultiPatch<d>& geometry_;
     std::vector<std::optional<iga::Location<d>>> locations_;
-    iga::Remeshing<d> remeshing_;
     iga::SpacePtr<d> space_;
+    iga::Remeshing<d> remeshing_;
     iga::SteppingState<d> start_;
     StateSeries<d> states_;
     FieldSeries<d> fields_;

@@ -12,8 +12,9 @@ namespace couture::iga {
 namespace {
 
 constexpr int max_halvings = 8;
-/// Share of the residual, or of its work on the step, that may be left after a step.
-constexpr double sufficient_decrease = 0.95;
+/// A share of a step must lower the residual, or its work on the step, by this part of that share:
+/// to first order it falls by all of it.
+constexpr double sufficient_decrease = 0.05;
 /// Forces below this share of |tangent| |u| are rounding.
 constexpr double rounding = 1e-14;
 /// Step in time, relative to it, for the derivative of the loads: exact where they are linear.
@@ -123,10 +124,10 @@ NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
             const bool is_unfolded = body.move_to(loads, now);
             if (is_unfolded) {
                 const VectorX trial = body.residual();
+                const double left = 1.0 - sufficient_decrease * share;
                 // Supports that move raise the residual: nothing to compare with.
-                if (has_jump || free_norm(trial, is_fixed) <= sufficient_decrease * size ||
-                    std::abs(free_dot(trial, step.col(0), is_fixed)) <=
-                        sufficient_decrease * std::abs(work) ||
+                if (has_jump || free_norm(trial, is_fixed) <= left * size ||
+                    std::abs(free_dot(trial, step.col(0), is_fixed)) <= left * std::abs(work) ||
                     free_norm(trial, is_fixed) <= floor) {
                     break;
                 }

@@ -92,7 +92,6 @@ MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
                          space.n_basis());
     }
     MatrixX current = values;
-    const Eigen::Index dimension = values.cols();
     // Each step solves along the first index and moves it behind the others.
     for (const KnotVector& knots : space.knots) {
         const Eigen::Index n = knots.n_basis();
@@ -101,7 +100,7 @@ MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
         const MatrixX turned = unfolded.transpose();
         current = turned;
     }
-    const Eigen::Map<const MatrixX> unfolded(current.data(), dimension, space.n_basis());
+    const Eigen::Map<const MatrixX> unfolded(current.data(), values.cols(), space.n_basis());
     return unfolded.transpose();
 }
 

@@ -100,7 +100,10 @@ iga::MultiPatch<3> make_half_seal(const PartValues& values) {
     iga::MultiPatch<3> seal = make_cuboids(values);
     iga::find_interfaces(seal, interface_tolerance);
     add_sets(seal, values);
-    divide(seal, static_cast<int>(values.at("divisions")));
+    const int divisions = static_cast<int>(values.at("divisions"));
+    if (divisions > 0) {
+        divide(seal, divisions);
+    }
     return seal;
 }
 
@@ -119,7 +122,8 @@ std::vector<PartDefinition> half_seal_parts() {
                {"ring_height", 31.5, 28.0, 35.0, "the ring's size along z, mm"},
                {"arm_height", 13.0, 10.0, 16.0, "the arm's size along z, mm"},
                {"arm_length", 65.0, 50.0, 80.0, "from the axis to the cap, mm"},
-               {"divisions", 1.0, 1.0, 20.0, "whole number k: 128 k^3 elements of about 7 / k mm"}},
+               {"divisions", 1.0, 0.0, 20.0,
+                "whole number k: 128 k^3 elements of about 7 / k mm; 0: the cuboids"}},
               3},
              make_half_seal}};
 }

@@ -11,7 +11,8 @@ namespace couture::meshing {
 /// angle, z), numbered with the angle fastest, and the arm (x, y, z) as the last: 13 interfaces, 34
 /// outer sides. Lines of the arm along its length are parallel to x. `divisions` = k cuts the
 /// cuboids into 128 k^3 elements of about 7 / k mm (ring: 2 k in radius, 5 k, 3 k, 5 k in angle, k,
-/// 2 k, k in z; arm: 4 k, 3 k, 2 k).
+/// 2 k, k in z; arm: 4 k, 3 k, 2 k); 0 leaves them whole, so that finer spaces of higher degree are
+/// smooth inside them.
 [[nodiscard]] std::vector<PartDefinition> half_seal_parts();
 
 }  // namespace couture::meshing

@@ -73,9 +73,14 @@ TEST_CASE("deck: unknown keys and sections", "[drivers]") {
           "      |   ^~~~~~~");
     CHECK(error_of(replaced("degree = 2", "smoothness = 2")) ==
           "bracket.toml:5: unknown key 'smoothness' in [discretization]; there are 'degree', "
-          "'elements', 'gauss_points', 'volumetric'\n"
+          "'elements', 'gauss_points', 'geometry', 'volumetric'\n"
           "    5 | smoothness = 2\n"
           "      | ^~~~~~~~~~");
+    CHECK(error_of(replaced("degree = 2", "geometry = \"interpolate\"")) ==
+          "bracket.toml:5: unknown geometry 'interpolate'; did you mean 'interpolated'? ('exact', "
+          "'interpolated')\n"
+          "    5 | geometry = \"interpolate\"\n"
+          "      |            ^~~~~~~~~~~~~");
     CHECK(error_of(replaced("[[pressure]]", "[[flux]]")) ==
           "bracket.toml:11: [[flux]] belongs to analysis type 'poisson'; the type of this deck is "
           "'elasticity'\n"

@@ -37,6 +37,15 @@ void volumes(Recorder& recorder) {
     }());
     compare("O-grid cylinder", 2.0 * pi, volume(part<3>("cylinder_o_grid")));
     compare("Cook's membrane, area", 48.0 * (44.0 + 16.0) / 2.0, volume(part<2>("cook")));
+    // Half ring, and the arm's box less what the cylinder takes of it.
+    const double half_width = 13.0;
+    const double outer = 40.0;
+    const double in_cylinder = half_width * std::sqrt(outer * outer - half_width * half_width) +
+                               outer * outer * std::asin(half_width / outer);
+    compare("half seal",
+            pi / 2.0 * (outer * outer - 25.0 * 25.0) * 31.5 +
+                (2.0 * half_width * 65.0 - in_cylinder) * 13.0,
+            volume(part<3>("half_seal")));
 }
 
 void pipe_tee(Recorder& recorder) {

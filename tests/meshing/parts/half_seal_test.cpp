@@ -234,6 +234,14 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("half_seal: whole cuboids without divisions", "[parts]") {
+    const iga::MultiPatch<3> seal = make_solid_part("half_seal", {{"divisions", 0.0}});
+    CHECK(n_elements(seal) == 10);
+    CHECK(seal.interfaces.size() == 13);
+    CHECK(iga::volume(seal) ==
+          Approx(exact_volume(13.0, 25.0, 40.0, 31.5, 13.0, 65.0)).epsilon(1e-13));
+}
+
 TEST_CASE("half_seal: values out of range and parts of a division are refused", "[parts]") {
     CHECK_THROWS_WITH(make_part("half_seal", {{"arm_half_width", 16.0}}),
                       Catch::Contains("half_seal: arm_half_width = 16 is out of range; it must lie "

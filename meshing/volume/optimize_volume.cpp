@@ -1,0 +1,376 @@
+#include "meshing/volume/optimize_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "iga/core/error.h"
+#include "iga/core/parallel.h"
+#include "iga/topology/jacobian_certificate.h"
+#include "meshing/volume/boundary_slide.h"
+#include "meshing/volume/lbfgs.h"
+#include "meshing/volume/shape_energy.h"
+
+namespace couture::meshing {
+
+using iga::MultiPatch;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Far from the optimum a small power of the plain mean ratio converges in few steps; growing
+/// powers then lower the worst elements.
+constexpr std::array<ShapeMeasure, 4> measures{{{.power = 2.0, .shape_ratio_weight = 0.0},
+                                                {.power = 4.0, .shape_ratio_weight = 1.0},
+                                                {.power = 8.0, .shape_ratio_weight = 1.0},
+                                                {.power = 16.0, .shape_ratio_weight = 1.0}}};
+/// What is reported as energy.
+constexpr ShapeMeasure reported_measure{.power = 2.0, .shape_ratio_weight = 0.0};
+/// All but the last need not be minimised exactly.
+constexpr double first_tolerance = 0.02;
+/// Part of the start's worst scaled Jacobian that must be left: it is often that of the angle
+/// between two faces, and falls a little wherever elements are not at right angles to the edge.
+constexpr double kept_scaled_jacobian = 0.97;
+/// Part of the elements' size that a control point moves per step, that points of curved features
+/// move per round, and below which these are held.
+constexpr double max_step = 0.5;
+constexpr double max_slide = 0.3;
+constexpr double min_slide = 0.01;
+/// Of the first step along the gradient.
+constexpr double first_step = 0.1;
+/// Armijo's condition: the part of the linear decrease asked for.
+constexpr double sufficient_decrease = 1e-4;
+constexpr int max_halvings = 20;
+/// Regularisation of a folded start, halved after each round down to the last.
+constexpr double first_regularization = 0.5;
+constexpr double last_regularization = 1e-3;
+/// A sample counts as unfolded above this inverse mean ratio.
+constexpr double unfolded = 1e-6;
+
+MatrixX points_of(const MultiPatch<3>& volume, const iga::DofMap& dofs) {
+    MatrixX points(3, dofs.n_dofs);
+    // Backwards, so that a shared point is that of its first patch.
+    for (int p = volume.n_patches(); p-- > 0;) {
+        for (std::size_t i = dofs.global[p].size(); i-- > 0;) {
+            points.col(dofs.global[p][i]) = volume.patches[p].control_points().row(i).transpose();
+        }
+    }
+    return points;
+}
+
+MultiPatch<3> with_points(const MultiPatch<3>& volume, const iga::DofMap& dofs,
+                          const MatrixX& points) {
+    MultiPatch<3> result = volume;
+    for (int p = 0; p < volume.n_patches(); ++p) {
+        const iga::Volume& patch = volume.patches[p];
+        MatrixX own(patch.control_points().rows(), 3);
+        for (int i = 0; i < own.rows(); ++i) {
+            own.row(i) = points.col(dofs.global[p][i]).transpose();
+        }
+        result.patches[p] = iga::Volume(patch.space(), std::move(own), patch.weights());
+    }
+    return result;
+}
+
+/// The worst certificate of all patches.
+iga::Validity validity(const MultiPatch<3>& volume) {
+    std::vector<iga::Validity> found(volume.n_patches());
+    for (int p = 0; p < volume.n_patches(); ++p) {
+        found[p] = iga::certify<3>(volume.patches[p]).validity;
+    }
+    return *std::max_element(found.begin(), found.end());
+}
+
+/// State of the minimisation.
+class Minimizer {
+  public:
+    Minimizer(const ShapeEnergy& energy, const BoundarySlide& slide,
+              const BoundaryFeatures& features, const VolumeOptimizationOptions& options,
+              double body_size)
+        : energy_(energy),
+          slide_(slide),
+          features_(features),
+          options_(options),
+          max_distance_(options.boundary_tolerance * body_size) {}
+
+    /// Starts with another measure.
+    void start(const MatrixX& points, const ShapeMeasure& measure) {
+        points_ = points;
+        measure_ = measure;
+        value_ = energy_.value(points, measure);
+        sizes_ = energy_.sizes(points);
+        memory_.clear();
+        reach_ = max_slide;
+    }
+
+    [[nodiscard]] const MatrixX& points() const { return points_; }
+
+    /// One round; the part by which the energy fell, nothing if no step lowers it.
+    std::optional<double> round() {
+        while (true) {
+            const bool holds_curved = reach_ < min_slide;
+            MatrixX moved = slid(holds_curved);
+            if (slide_.has_curved() && options_.slide_boundary && !holds_curved) {
+                moved = slide_.retracted(moved);
+            }
+            const double value = energy_.value(moved, measure_);
+            if (value < value_ && slide_.distance(moved, 1) <= max_distance_) {
+                const double decrease = (value_ - value) / value_;
+                value_ = value;
+                points_ = std::move(moved);
+                return decrease;
+            }
+            if (holds_curved || !slide_.has_curved() || !options_.slide_boundary) {
+                return std::nullopt;
+            }
+            reach_ *= 0.3;
+            memory_.clear();
+        }
+    }
+
+  private:
+    [[nodiscard]] TangentFrames frames(bool holds_curved) const {
+        TangentFrames result = slide_.frames(points_);
+        for (int i = 0; i < points_.cols(); ++i) {
+            if (features_.freedom(i) != Freedom::interior &&
+                (!options_.slide_boundary || (holds_curved && slide_.is_curved(i)))) {
+                result.set(i, Freedom::fixed, Vector3::Zero());
+            }
+        }
+        return result;
+    }
+
+    /// Largest part of `step` that keeps curved features within reach of where they were.
+    [[nodiscard]] double longest_step(const MatrixX& from, const MatrixX& step) const {
+        double result = 1.0;
+        for (int i = 0; i < step.cols(); ++i) {
+            const double length = step.col(i).norm();
+            result = std::min(result, max_step * sizes_[i] / length);
+            if (slide_.is_curved(i)) {
+                const double left = reach_ * sizes_[i] - (from.col(i) - points_.col(i)).norm();
+                result = std::min(result, std::max(left, 0.0) / length);
+            }
+        }
+        return result;
+    }
+
+    /// Steps of L-BFGS in the tangent space of the boundary, in variables scaled by the elements'
+    /// sizes.
+    MatrixX slid(bool holds_curved) {
+        const TangentFrames tangents = frames(holds_curved);
+        const auto scaled_gradient = [&](MatrixX gradient) {
+            tangents.project(gradient);
+            gradient *= sizes_.asDiagonal();
+            return gradient;
+        };
+        MatrixX points = points_;
+        EnergyGradient here = energy_.with_gradient(points, measure_);
+        MatrixX gradient = scaled_gradient(std::move(here.gradient));
+        for (int i = 0; i < options_.steps_per_round; ++i) {
+            MatrixX step = direction(gradient, tangents);
+            double slope = step.cwiseProduct(gradient).sum();
+            if (!(slope < 0.0)) {
+                memory_.clear();
+                step = direction(gradient, tangents);
+                slope = step.cwiseProduct(gradient).sum();
+            }
+            if (!(slope < 0.0)) {
+                break;
+            }
+            MatrixX change = step * sizes_.asDiagonal();
+            double length = longest_step(points, change);
+            if (length < min_slide) {
+                break;
+            }
+            bool is_lower = false;
+            for (int k = 0; k < max_halvings && !is_lower; ++k) {
+                MatrixX next = points + length * change;
+                EnergyGradient there = energy_.with_gradient(next, measure_);
+                is_lower = there.value <= here.value + sufficient_decrease * length * slope;
+                if (is_lower) {
+                    MatrixX next_gradient = scaled_gradient(std::move(there.gradient));
+                    memory_.add(length * step.reshaped(), (next_gradient - gradient).reshaped());
+                    points = std::move(next);
+                    gradient = std::move(next_gradient);
+                    here.value = there.value;
+                } else {
+                    length *= 0.5;
+                }
+            }
+            if (!is_lower) {
+                break;
+            }
+        }
+        return points;
+    }
+
+    [[nodiscard]] MatrixX direction(const MatrixX& gradient, const TangentFrames& tangents) const {
+        MatrixX step = memory_.direction(gradient.reshaped()).reshaped(3, gradient.cols());
+        tangents.project(step);
+        if (memory_.is_empty()) {
+            const double largest = step.colwise().norm().maxCoeff();
+            step *= largest > 0.0 ? first_step / largest : 0.0;
+        }
+        return step;
+    }
+
+    const ShapeEnergy& energy_;
+    const BoundarySlide& slide_;
+    const BoundaryFeatures& features_;
+    const VolumeOptimizationOptions& options_;
+    double max_distance_;
+    ShapeMeasure measure_;
+    MatrixX points_;
+    double value_ = infinity;
+    VectorX sizes_;
+    Lbfgs memory_;
+    double reach_ = max_slide;
+};
+
+void check_options(const VolumeOptimizationOptions& options) {
+    if (options.max_rounds < 0 || options.steps_per_round < 1) {
+        throw InputError(
+            "optimize_volume: max_rounds = {} and steps_per_round = {}; there must be at least 0 "
+            "rounds of 1 step",
+            options.max_rounds, options.steps_per_round);
+    }
+    if (!(options.tolerance >= 0.0) || !(options.boundary_tolerance > 0.0)) {
+        throw InputError(
+            "optimize_volume: tolerance = {} and boundary_tolerance = {}; the first must not be "
+            "negative, the second positive",
+            options.tolerance, options.boundary_tolerance);
+    }
+}
+
+/// Rounds with a regularised measure until no sample is folded.
+void unfold(ShapeEnergy& energy, Minimizer& minimizer, const MatrixX& start, int max_rounds,
+            VolumeOptimizationReport& report) {
+    energy.set_reference(start);
+    MatrixX points = start;
+    double regularization = first_regularization;
+    ShapeSummary worst = energy.summary(points);
+    for (int i = 0; i < max_rounds && worst.min_inverse_mean_ratio < unfolded; ++i) {
+        minimizer.start(points, {.power = 1.0, .regularization = regularization});
+        report.untangling_rounds += minimizer.round() ? 1 : 0;
+        points = minimizer.points();
+        worst = energy.summary(points);
+        regularization = std::max(0.5 * regularization, last_regularization);
+    }
+    if (worst.min_inverse_mean_ratio < unfolded) {
+        throw GeometryError(
+            "optimize_volume: patch {} is folded at xi = ({:.4g}, {:.4g}, {:.4g}), det J / |J|^3 * "
+            "3 sqrt(3) = {:.3g}, and {} rounds did not unfold it; it must be positive. Remesh "
+            "earlier, or mend the boundary there",
+            worst.patch, worst.xi[0], worst.xi[1], worst.xi[2], worst.min_inverse_mean_ratio,
+            max_rounds);
+    }
+    report.rounds += report.untangling_rounds;
+}
+
+VolumeQuality quality(const ShapeSummary& summary) {
+    return {.max_shape_ratio = summary.max_shape_ratio,
+            .min_scaled_jacobian = summary.min_scaled_jacobian,
+            .min_inverse_mean_ratio = summary.min_inverse_mean_ratio};
+}
+
+}  // namespace
+
+OptimizedVolume optimize_volume(const MultiPatch<3>& deformed, const BoundaryFeatures& features,
+                                const VolumeOptimizationOptions& options) {
+    check_options(options);
+    if (iga::signature(deformed) != features.signature()) {
+        throw TopologyError(
+            "optimize_volume: the volume has signature {}, the features {}; both must come from "
+            "the same initial body",
+            iga::signature(deformed), features.signature());
+    }
+    const iga::DofMap& dofs = features.dofs();
+    std::vector<int> orientations;
+    for (int p = 0; p < deformed.n_patches(); ++p) {
+        orientations.push_back(features.orientation(p));
+    }
+    const MatrixX start = points_of(deformed, dofs);
+    ShapeEnergy energy(deformed, dofs, orientations);
+    const BoundarySlide slide(deformed, features);
+    Minimizer minimizer(energy, slide, features, options, deformed.size());
+
+    OptimizedVolume result{deformed, {}};
+    VolumeOptimizationReport& report = result.report;
+    const ShapeSummary summary = energy.summary(start);
+    report.before = quality(summary);
+    report.energy_before = energy.value(start, reported_measure);
+
+    // All accepted states that are no worse than the start.
+    struct State {
+        MatrixX points;
+        double shape_ratio;
+    };
+    std::vector<State> states;
+    const auto keep = [&](const MatrixX& state) {
+        const ShapeSummary found = energy.summary(state);
+        const double least = kept_scaled_jacobian * summary.min_scaled_jacobian;
+        if (found.min_scaled_jacobian >= least && found.max_shape_ratio < infinity) {
+            states.push_back({state, found.max_shape_ratio});
+        }
+    };
+    MatrixX points = start;
+    if (summary.min_inverse_mean_ratio < unfolded) {
+        unfold(energy, minimizer, start, options.max_rounds, report);
+        points = minimizer.points();
+        keep(points);
+    }
+    for (std::size_t i = 0; i < measures.size(); ++i) {
+        ShapeMeasure measure = measures[i];
+        const bool is_last = i + 1 == measures.size();
+        if (energy.value(points, measure) == infinity) {
+            measure.shape_ratio_weight = 0.0;
+        }
+        minimizer.start(points, measure);
+        while (report.rounds < options.max_rounds) {
+            const std::optional<double> decrease = minimizer.round();
+            if (!decrease) {
+                break;
+            }
+            ++report.rounds;
+            keep(minimizer.points());
+            if (*decrease < (is_last ? options.tolerance : first_tolerance)) {
+                break;
+            }
+        }
+        points = minimizer.points();
+    }
+
+    // The best by shape ratio whose certificate holds.
+    const iga::Validity before = validity(deformed);
+    const iga::Validity needed = std::min(before, iga::Validity::degenerate);
+    if (before <= needed) {
+        states.insert(states.begin(), {start, summary.max_shape_ratio});
+    }
+    std::stable_sort(states.begin(), states.end(),
+                     [](const State& a, const State& b) { return a.shape_ratio < b.shape_ratio; });
+    bool is_found = false;
+    for (std::size_t i = 0; i < states.size() && !is_found; ++i) {
+        points = states[i].points;
+        result.volume = with_points(deformed, dofs, points);
+        is_found = validity(result.volume) <= needed;
+    }
+    if (!is_found) {
+        throw GeometryError(
+            "optimize_volume: det J is positive at all samples, but the certificate of no state is "
+            "valid; refine the volume, or remesh earlier");
+    }
+
+    report.after = quality(energy.summary(points));
+    report.energy_after = energy.value(points, reported_measure);
+    const double old_volume = iga::volume(deformed);
+    report.volume_change = (iga::volume(result.volume) - old_volume) / old_volume;
+    if (slide.has_curved() && options.slide_boundary) {
+        report.boundary_distance = std::max(
+            slide.distance(points, 2), BoundarySlide(result.volume, features).distance(start, 2));
+    }
+    return result;
+}
+
+}  // namespace couture::meshing

@@ -1,0 +1,535 @@
+#include "meshing/volume/shape_energy.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "iga/core/parallel.h"
+#include "iga/spline/gauss.h"
+#include "iga/topology/element_quality.h"
+#include "meshing/volume/hexahedron_shape.h"
+
+namespace couture::meshing {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int elements_per_chunk = 16;
+/// Corners with a smaller inverse mean ratio count as singular in the starting geometry.
+constexpr double singular_ratio = 1e-9;
+/// 3 sqrt(3): |J|^3 over det J of the identity.
+const double cube_ratio = 3.0 * std::sqrt(3.0);
+
+/// Coordinates times weight, and the weight.
+using Row = Eigen::Array4d;
+
+/// Starting threads takes longer than a few chunks do.
+constexpr int min_parallel_chunks = 16;
+
+void for_each(int n, const std::function<void(int)>& body) {
+    if (n >= min_parallel_chunks) {
+        parallel_for(n, body);
+        return;
+    }
+    for (int i = 0; i < n; ++i) {
+        body(i);
+    }
+}
+
+double element_size_cubed(const Matrix<3>& J) { return std::pow(J.squaredNorm() / 3.0, 1.5); }
+
+/// 1 / mean ratio, negative where folded; 0 for a zero matrix.
+double inverse_mean_ratio(const Matrix<3>& J, int orientation) {
+    const double cubed = element_size_cubed(J);
+    return cubed > 0.0 ? orientation * J.determinant() / cubed : 0.0;
+}
+
+/// mu^power of one sample and its derivative by J.
+struct SampleEnergy {
+    double value = infinity;
+    Matrix<3> by_J = Matrix<3>::Zero();
+};
+
+/// @param delta  added to det J, see ShapeMeasure::regularization
+SampleEnergy sample_energy(const Matrix<3>& J, int orientation, double power, double delta) {
+    SampleEnergy result;
+    Matrix<3> cofactor;
+    cofactor.col(0) = J.col(1).cross(J.col(2));
+    cofactor.col(1) = J.col(2).cross(J.col(0));
+    cofactor.col(2) = J.col(0).cross(J.col(1));
+    const double det = orientation * J.col(0).dot(cofactor.col(0));
+    const double root = std::sqrt(det * det + 4.0 * delta * delta);
+    // The second form loses no digits for det < 0.
+    const double h = delta == 0.0 ? det
+                     : det > 0.0  ? 0.5 * (det + root)
+                                  : 2.0 * delta * delta / (root - det);
+    const double squared = J.squaredNorm();
+    if (!(h > 0.0) || !(squared > 0.0)) {
+        return result;
+    }
+    const double mu = squared * std::sqrt(squared) / (cube_ratio * h);
+    result.value = std::pow(mu, power);
+    // d ln h / d det = 1 / root, with root = det for delta = 0.
+    result.by_J = power * result.value * (3.0 / squared * J - orientation / root * cofactor);
+    return result;
+}
+
+}  // namespace
+
+/// Sum factorisation on one element: values and derivatives at all samples of one kind, and the
+/// transposed operation.
+class ShapeEnergy::Element {
+  public:
+    struct Point {
+        Row value, d0, d1, d2;
+    };
+
+    /// Moves to an element and evaluates the rows at its corners (kind 0) and Gauss points (1).
+    void load(const PatchTables& patch, int i_element, const MatrixX& points) {
+        patch_ = &patch;
+        for (int k = 0; k < 3; ++k) {
+            element_[k] = i_element % patch.n_elements[k];
+            i_element /= patch.n_elements[k];
+            n_[k] = patch.tables[0][k].n_functions;
+        }
+        functions_.resize(n_[0] * n_[1] * n_[2]);
+        rows_.resize(functions_.size());
+        for (int i2 = 0, f = 0; i2 < n_[2]; ++i2) {
+            for (int i1 = 0; i1 < n_[1]; ++i1) {
+                for (int i0 = 0; i0 < n_[0]; ++i0, ++f) {
+                    functions_[f] =
+                        first(0) + i0 +
+                        patch.n_basis[0] * (first(1) + i1 + patch.n_basis[1] * (first(2) + i2));
+                    const double weight = patch.weights[functions_[f]];
+                    rows_[f].head<3>() = weight * points.col(patch.dofs[functions_[f]]).array();
+                    rows_[f][3] = weight;
+                }
+            }
+        }
+        forward(0);
+        forward(1);
+    }
+
+    [[nodiscard]] int orientation() const { return patch_->orientation; }
+    [[nodiscard]] int n_functions() const { return static_cast<int>(functions_.size()); }
+    [[nodiscard]] std::vector<int> dofs() const {
+        std::vector<int> result;
+        for (const int function : functions_) {
+            result.push_back(patch_->dofs[function]);
+        }
+        return result;
+    }
+    [[nodiscard]] int n_samples(int kind) const { return static_cast<int>(points_[kind].size()); }
+
+    [[nodiscard]] Vector3 position(int kind, int q) const {
+        const Row& value = points_[kind][q].value;
+        return value.head<3>() / value[3];
+    }
+    [[nodiscard]] Matrix<3> jacobian(int kind, int q) const {
+        const Point& p = points_[kind][q];
+        const Eigen::Array3d x = p.value.head<3>() / p.value[3];
+        Matrix<3> J;
+        J.col(0) = (p.d0.head<3>() - x * p.d0[3]) / p.value[3];
+        J.col(1) = (p.d1.head<3>() - x * p.d1[3]) / p.value[3];
+        J.col(2) = (p.d2.head<3>() - x * p.d2[3]) / p.value[3];
+        return J;
+    }
+    [[nodiscard]] Hexahedron corners() const {
+        Hexahedron result;
+        for (int q = 0; q < 8; ++q) {
+            result.col(q) = position(0, q);
+        }
+        return result;
+    }
+    /// Position of a sample in the patch's parameters.
+    [[nodiscard]] Vector3 xi(int kind, int q) const {
+        Vector3 result;
+        for (int k = 0; k < 3; ++k) {
+            const int n = patch_->tables[kind][k].n_points;
+            const int i = q % n;
+            q /= n;
+            const double t = kind == 0 ? i : iga::gauss_rule(n).points[i];
+            result[k] = (1.0 - t) * patch_->breakpoints[k][element_[k]] +
+                        t * patch_->breakpoints[k][element_[k] + 1];
+        }
+        return result;
+    }
+
+    void clear_gradient() {
+        for (int kind = 0; kind < 2; ++kind) {
+            gradients_[kind].assign(points_[kind].size(),
+                                    {Row::Zero(), Row::Zero(), Row::Zero(), Row::Zero()});
+        }
+    }
+    void add_by_jacobian(int kind, int q, const Matrix<3>& by_J) {
+        const Point& p = points_[kind][q];
+        const double w = p.value[3];
+        Point& g = gradients_[kind][q];
+        g.d0.head<3>() += by_J.col(0).array() / w;
+        g.d1.head<3>() += by_J.col(1).array() / w;
+        g.d2.head<3>() += by_J.col(2).array() / w;
+        g.value.head<3>() -= (by_J.col(0).array() * p.d0[3] + by_J.col(1).array() * p.d1[3] +
+                              by_J.col(2).array() * p.d2[3]) /
+                             (w * w);
+    }
+    void add_by_corner(int q, const Vector3& by_x) {
+        gradients_[0][q].value.head<3>() += by_x.array() / points_[0][q].value[3];
+    }
+    /// Derivatives by the element's control points, 3 x n_functions.
+    void write_gradient(Eigen::Ref<MatrixX> by_points) {
+        std::fill(rows_.begin(), rows_.end(), Row::Zero());
+        backward(0);
+        backward(1);
+        for (int f = 0; f < n_functions(); ++f) {
+            by_points.col(f) = patch_->weights[functions_[f]] * rows_[f].head<3>().matrix();
+        }
+    }
+
+  private:
+    [[nodiscard]] int first(int k) const {
+        return patch_->tables[0][k].first_function[element_[k]];
+    }
+    [[nodiscard]] const double* value(int kind, int k, int q) const {
+        return patch_->tables[kind][k].value(element_[k], q);
+    }
+    [[nodiscard]] const double* derivative(int kind, int k, int q) const {
+        return patch_->tables[kind][k].derivative(element_[k], q);
+    }
+
+    void resize(int kind) {
+        for (int k = 0; k < 3; ++k) {
+            q_[k] = patch_->tables[kind][k].n_points;
+        }
+        a_.resize(2 * q_[0] * n_[1] * n_[2]);
+        b_.resize(3 * q_[0] * q_[1] * n_[2]);
+        points_[kind].resize(q_[0] * q_[1] * q_[2]);
+    }
+
+    void forward(int kind) {
+        resize(kind);
+        for (int i12 = 0; i12 < n_[1] * n_[2]; ++i12) {
+            for (int q = 0; q < q_[0]; ++q) {
+                const double* N = value(kind, 0, q);
+                const double* D = derivative(kind, 0, q);
+                Row plain = Row::Zero();
+                Row derived = Row::Zero();
+                for (int i = 0; i < n_[0]; ++i) {
+                    const Row& c = rows_[i + n_[0] * i12];
+                    plain += N[i] * c;
+                    derived += D[i] * c;
+                }
+                a_[2 * (q + q_[0] * i12)] = plain;
+                a_[2 * (q + q_[0] * i12) + 1] = derived;
+            }
+        }
+        for (int i2 = 0; i2 < n_[2]; ++i2) {
+            for (int q1 = 0; q1 < q_[1]; ++q1) {
+                const double* N = value(kind, 1, q1);
+                const double* D = derivative(kind, 1, q1);
+                for (int q0 = 0; q0 < q_[0]; ++q0) {
+                    Row plain = Row::Zero();
+                    Row by_0 = Row::Zero();
+                    Row by_1 = Row::Zero();
+                    for (int i = 0; i < n_[1]; ++i) {
+                        const Row* a = &a_[2 * (q0 + q_[0] * (i + n_[1] * i2))];
+                        plain += N[i] * a[0];
+                        by_0 += N[i] * a[1];
+                        by_1 += D[i] * a[0];
+                    }
+                    Row* b = &b_[3 * (q0 + q_[0] * (q1 + q_[1] * i2))];
+                    b[0] = plain;
+                    b[1] = by_0;
+                    b[2] = by_1;
+                }
+            }
+        }
+        const int n_plane = q_[0] * q_[1];
+        for (int q2 = 0; q2 < q_[2]; ++q2) {
+            const double* N = value(kind, 2, q2);
+            const double* D = derivative(kind, 2, q2);
+            for (int q01 = 0; q01 < n_plane; ++q01) {
+                Point p{Row::Zero(), Row::Zero(), Row::Zero(), Row::Zero()};
+                for (int i = 0; i < n_[2]; ++i) {
+                    const Row* b = &b_[3 * (q01 + n_plane * i)];
+                    p.value += N[i] * b[0];
+                    p.d0 += N[i] * b[1];
+                    p.d1 += N[i] * b[2];
+                    p.d2 += D[i] * b[0];
+                }
+                points_[kind][q01 + n_plane * q2] = p;
+            }
+        }
+    }
+
+    /// Adds the derivatives by the rows.
+    void backward(int kind) {
+        resize(kind);
+        std::fill(a_.begin(), a_.end(), Row::Zero());
+        std::fill(b_.begin(), b_.end(), Row::Zero());
+        const int n_plane = q_[0] * q_[1];
+        for (int q2 = 0; q2 < q_[2]; ++q2) {
+            const double* N = value(kind, 2, q2);
+            const double* D = derivative(kind, 2, q2);
+            for (int q01 = 0; q01 < n_plane; ++q01) {
+                const Point& g = gradients_[kind][q01 + n_plane * q2];
+                for (int i = 0; i < n_[2]; ++i) {
+                    Row* b = &b_[3 * (q01 + n_plane * i)];
+                    b[0] += N[i] * g.value + D[i] * g.d2;
+                    b[1] += N[i] * g.d0;
+                    b[2] += N[i] * g.d1;
+                }
+            }
+        }
+        for (int i2 = 0; i2 < n_[2]; ++i2) {
+            for (int q1 = 0; q1 < q_[1]; ++q1) {
+                const double* N = value(kind, 1, q1);
+                const double* D = derivative(kind, 1, q1);
+                for (int q0 = 0; q0 < q_[0]; ++q0) {
+                    const Row* b = &b_[3 * (q0 + q_[0] * (q1 + q_[1] * i2))];
+                    for (int i = 0; i < n_[1]; ++i) {
+                        Row* a = &a_[2 * (q0 + q_[0] * (i + n_[1] * i2))];
+                        a[0] += N[i] * b[0] + D[i] * b[2];
+                        a[1] += N[i] * b[1];
+                    }
+                }
+            }
+        }
+        for (int i12 = 0; i12 < n_[1] * n_[2]; ++i12) {
+            for (int q = 0; q < q_[0]; ++q) {
+                const double* N = value(kind, 0, q);
+                const double* D = derivative(kind, 0, q);
+                const Row* a = &a_[2 * (q + q_[0] * i12)];
+                for (int i = 0; i < n_[0]; ++i) {
+                    rows_[i + n_[0] * i12] += N[i] * a[0] + D[i] * a[1];
+                }
+            }
+        }
+    }
+
+    const PatchTables* patch_ = nullptr;
+    std::array<int, 3> element_{};
+    /// Functions and samples per direction.
+    std::array<int, 3> n_{};
+    std::array<int, 3> q_{};
+    std::vector<int> functions_;
+    std::vector<Row> rows_;
+    std::vector<Row> a_;
+    std::vector<Row> b_;
+    std::array<std::vector<Point>, 2> points_;
+    std::array<std::vector<Point>, 2> gradients_;
+};
+
+ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
+                         const std::vector<int>& orientations)
+    : n_dofs_(dofs.n_dofs) {
+    MatrixX start(3, n_dofs_);
+    for (int p = 0; p < geometry.n_patches(); ++p) {
+        const iga::Patch<3>& patch = geometry.patches[p];
+        PatchTables data;
+        data.orientation = orientations[p];
+        data.dofs = dofs.global[p];
+        data.weights =
+            patch.is_rational() ? patch.weights() : VectorX::Ones(patch.control_points().rows());
+        int n_elements = 1;
+        for (int k = 0; k < 3; ++k) {
+            const iga::KnotVector& knots = patch.knots(k);
+            data.n_basis[k] = knots.n_basis();
+            data.n_elements[k] = knots.n_elements();
+            data.breakpoints[k] = knots.breakpoints();
+            n_elements *= knots.n_elements();
+            const std::array<std::vector<double>, 2> samples{
+                std::vector<double>{0.0, 1.0}, iga::gauss_rule(std::max(knots.degree(), 2)).points};
+            for (int kind = 0; kind < 2; ++kind) {
+                iga::BasisTable table = tabulate(knots, data.breakpoints[k], samples[kind]);
+                const std::size_t per_element = table.derivatives.size() / knots.n_elements();
+                for (std::size_t i = 0; i < table.derivatives.size(); ++i) {
+                    const std::size_t e = i / per_element;
+                    table.derivatives[i] *= data.breakpoints[k][e + 1] - data.breakpoints[k][e];
+                }
+                data.tables[kind][k] = std::move(table);
+            }
+        }
+        for (int e = 0; e < n_elements; e += elements_per_chunk) {
+            chunks_.push_back(
+                {p, e, std::min(e + elements_per_chunk, n_elements), n_elements_ + e});
+        }
+        n_elements_ += n_elements;
+        for (std::size_t i = 0; i < data.dofs.size(); ++i) {
+            start.col(data.dofs[i]) = patch.control_points().row(i).transpose();
+        }
+        patches_.push_back(std::move(data));
+    }
+    singular_corners_.assign(n_elements_, 0);
+    element_dofs_.resize(n_elements_);
+    for_each(static_cast<int>(chunks_.size()), [&](int i) {
+        const Chunk& chunk = chunks_[i];
+        Element element;
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            const int number = chunk.first_number + e - chunk.first_element;
+            element.load(patches_[chunk.patch], e, start);
+            element_dofs_[number] = element.dofs();
+            for (int q = 0; q < 8; ++q) {
+                if (std::abs(inverse_mean_ratio(element.jacobian(0, q), 1)) < singular_ratio) {
+                    singular_corners_[number] |= 1U << q;
+                }
+            }
+        }
+    });
+    set_reference(start);
+}
+
+double ShapeEnergy::value(const MatrixX& points, const ShapeMeasure& measure) const {
+    return evaluate(points, measure, nullptr);
+}
+
+EnergyGradient ShapeEnergy::with_gradient(const MatrixX& points,
+                                          const ShapeMeasure& measure) const {
+    EnergyGradient result;
+    result.value = evaluate(points, measure, &result.gradient);
+    return result;
+}
+
+double ShapeEnergy::evaluate(const MatrixX& points, const ShapeMeasure& measure,
+                             MatrixX* gradient) const {
+    std::vector<double> values(n_elements_, 0.0);
+    std::vector<MatrixX> gradients(gradient != nullptr ? n_elements_ : 0);
+    for_each(static_cast<int>(chunks_.size()), [&](int i) {
+        const Chunk& chunk = chunks_[i];
+        Element element;
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            const int number = chunk.first_number + e - chunk.first_element;
+            const unsigned singular = singular_corners_[number];
+            const double delta = measure.regularization * reference_volumes_[number];
+            element.load(patches_[chunk.patch], e, points);
+            element.clear_gradient();
+            int n_samples = element.n_samples(1);
+            for (int q = 0; q < 8; ++q) {
+                n_samples += (singular >> q & 1U) != 0 ? 0 : 1;
+            }
+            double sum = 0.0;
+            for (int kind = 0; kind < 2 && sum < infinity; ++kind) {
+                for (int q = 0; q < element.n_samples(kind) && sum < infinity; ++q) {
+                    if (kind == 0 && (singular >> q & 1U) != 0) {
+                        continue;
+                    }
+                    const SampleEnergy sample = sample_energy(
+                        element.jacobian(kind, q), element.orientation(), measure.power, delta);
+                    sum += sample.value / n_samples;
+                    element.add_by_jacobian(kind, q, sample.by_J / n_samples);
+                }
+            }
+            if (measure.shape_ratio_weight > 0.0 && singular == 0 && sum < infinity) {
+                const SmoothShapeRatio ratio =
+                    smooth_shape_ratio(element.corners(), element.orientation());
+                const double power = std::pow(ratio.value, measure.power);
+                sum += measure.shape_ratio_weight * power;
+                for (int q = 0; q < 8 && power < infinity; ++q) {
+                    element.add_by_corner(q, measure.shape_ratio_weight * measure.power * power /
+                                                 ratio.value * ratio.gradient.col(q));
+                }
+            }
+            values[number] = sum;
+            if (gradient != nullptr && sum < infinity) {
+                gradients[number].resize(3, element.n_functions());
+                element.write_gradient(gradients[number]);
+            }
+        }
+    });
+    double total = 0.0;
+    for (const double value : values) {
+        total += value / n_elements_;
+    }
+    if (!std::isfinite(total)) {
+        total = infinity;
+    }
+    if (gradient != nullptr) {
+        *gradient = MatrixX::Zero(3, n_dofs_);
+        for (int e = 0; e < n_elements_ && total < infinity; ++e) {
+            for (std::size_t f = 0; f < element_dofs_[e].size(); ++f) {
+                gradient->col(element_dofs_[e][f]) += gradients[e].col(f) / n_elements_;
+            }
+        }
+    }
+    return total;
+}
+
+ShapeSummary ShapeEnergy::summary(const MatrixX& points) const {
+    std::vector<ShapeSummary> worst(chunks_.size());
+    for_each(static_cast<int>(chunks_.size()), [&](int i) {
+        const Chunk& chunk = chunks_[i];
+        worst[i].min_inverse_mean_ratio = infinity;
+        Element element;
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            const unsigned singular =
+                singular_corners_[chunk.first_number + e - chunk.first_element];
+            element.load(patches_[chunk.patch], e, points);
+            for (int kind = 0; kind < 2; ++kind) {
+                for (int q = 0; q < element.n_samples(kind); ++q) {
+                    if (kind == 0 && (singular >> q & 1U) != 0) {
+                        continue;
+                    }
+                    const Matrix<3> J = element.jacobian(kind, q);
+                    worst[i].min_scaled_jacobian =
+                        std::min(worst[i].min_scaled_jacobian,
+                                 element.orientation() * iga::scaled_jacobian<3>(J));
+                    const double ratio = inverse_mean_ratio(J, element.orientation());
+                    if (ratio < worst[i].min_inverse_mean_ratio) {
+                        worst[i].min_inverse_mean_ratio = ratio;
+                        worst[i].patch = chunk.patch;
+                        worst[i].xi = element.xi(kind, q);
+                    }
+                }
+            }
+            worst[i].max_shape_ratio =
+                std::max(worst[i].max_shape_ratio, shape_ratio(element.corners()));
+        }
+    });
+    ShapeSummary result = worst[0];
+    for (const ShapeSummary& other : worst) {
+        const double shape = std::max(result.max_shape_ratio, other.max_shape_ratio);
+        const double scaled = std::min(result.min_scaled_jacobian, other.min_scaled_jacobian);
+        if (other.min_inverse_mean_ratio < result.min_inverse_mean_ratio) {
+            result = other;
+        }
+        result.max_shape_ratio = shape;
+        result.min_scaled_jacobian = scaled;
+    }
+    return result;
+}
+
+std::vector<double> ShapeEnergy::volumes(const MatrixX& points) const {
+    std::vector<double> result(n_elements_, 0.0);
+    for_each(static_cast<int>(chunks_.size()), [&](int i) {
+        const Chunk& chunk = chunks_[i];
+        Element element;
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            element.load(patches_[chunk.patch], e, points);
+            double sum = 0.0;
+            for (int q = 0; q < element.n_samples(1); ++q) {
+                sum += element_size_cubed(element.jacobian(1, q));
+            }
+            result[chunk.first_number + e - chunk.first_element] = sum / element.n_samples(1);
+        }
+    });
+    return result;
+}
+
+VectorX ShapeEnergy::sizes(const MatrixX& points) const {
+    const std::vector<double> cubes = volumes(points);
+    VectorX sum = VectorX::Zero(n_dofs_);
+    VectorX count = VectorX::Zero(n_dofs_);
+    for (int e = 0; e < n_elements_; ++e) {
+        for (const int dof : element_dofs_[e]) {
+            sum[dof] += std::cbrt(cubes[e]);
+            count[dof] += 1.0;
+        }
+    }
+    return sum.cwiseQuotient(count);
+}
+
+void ShapeEnergy::set_reference(const MatrixX& points) { reference_volumes_ = volumes(points); }
+
+}  // namespace couture::meshing

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "iga/spline/bspline_basis.h"
+#include "iga/topology/dof_map.h"
+#include "iga/topology/multipatch.h"
+
+namespace couture::meshing {
+
+/// What a ShapeEnergy measures.
+struct ShapeMeasure {
+    /// Exponent of the mean ratio and the shape ratio: the larger, the more the worst count.
+    double power = 2.0;
+    /// Part of the shape ratio of the elements' corners beside the mean ratio.
+    double shape_ratio_weight = 0.0;
+    /// 0: infinite for folded elements. Else det J is replaced by
+    /// (det J + sqrt(det J^2 + (2 regularization size^3)^2)) / 2, finite for all, with the
+    /// element's size (see ShapeEnergy::set_reference).
+    double regularization = 0.0;
+};
+
+struct EnergyGradient {
+    double value = 0.0;
+    /// 3 x n_dofs.
+    MatrixX gradient;
+};
+
+/// The worst samples of all elements.
+struct ShapeSummary {
+    /// Smallest 1 / mean ratio, in [-1, 1]; negative where folded.
+    double min_inverse_mean_ratio = 1.0;
+    int patch = 0;
+    Vector3 xi = Vector3::Zero();
+    /// Largest shape ratio of the elements' corners (see shape_ratio).
+    double max_shape_ratio = 0.0;
+    /// Smallest det J over the product of the lengths of its columns.
+    double min_scaled_jacobian = 1.0;
+};
+
+/// How far the elements of a multipatch volume are from cubes, as a function of its control points.
+///
+/// E = mean over elements of (mean over samples of mu^power + weight (S / sqrt(3))^power), mu =
+/// |J|^3 / (3 sqrt(3) det J) the inverse mean ratio of the map from the unit cube to the element,
+/// sampled at the element's corners and max(degree, 2)^3 Gauss points, S the smooth shape ratio of
+/// its corners. 1 + weight for cubes, independent of size. Corner samples at which `geometry` is
+/// singular (collapsed sides, corners with a straight angle) are left out, and such elements have
+/// no S. Sums run in a fixed order: results do not depend on the number of threads.
+///
+/// Source: [Knupp01] for the mean ratio; [Escobar03] for its regularisation.
+class ShapeEnergy {
+  public:
+    /// @param geometry  spaces and weights; its points choose the corners left out
+    /// @param orientations  of the patches, +1 or -1
+    ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
+                const std::vector<int>& orientations);
+
+    /// @param points  control points, 3 x n_dofs
+    [[nodiscard]] double value(const MatrixX& points, const ShapeMeasure& measure) const;
+    [[nodiscard]] EnergyGradient with_gradient(const MatrixX& points,
+                                               const ShapeMeasure& measure) const;
+    [[nodiscard]] ShapeSummary summary(const MatrixX& points) const;
+    /// Mean size (|J| / sqrt(3)) of the elements around each control point, n_dofs.
+    [[nodiscard]] VectorX sizes(const MatrixX& points) const;
+    /// Takes the sizes of elements for regularised measures from `points`.
+    void set_reference(const MatrixX& points);
+
+  private:
+    /// Functions at the samples of one kind (corners or Gauss points), by direction; derivatives
+    /// by the coordinates of the unit cube.
+    using Tables = std::array<iga::BasisTable, 3>;
+    struct PatchTables {
+        int orientation = 1;
+        std::array<int, 3> n_basis{};
+        std::array<int, 3> n_elements{};
+        std::array<std::vector<double>, 3> breakpoints;
+        std::array<Tables, 2> tables;
+        /// Of each function: global number and weight.
+        std::vector<int> dofs;
+        VectorX weights;
+    };
+    /// Elements that one thread does at a time.
+    struct Chunk {
+        int patch = 0;
+        int first_element = 0;
+        int last_element = 0;
+        /// Of the first element, among all.
+        int first_number = 0;
+    };
+    class Element;
+
+    [[nodiscard]] double evaluate(const MatrixX& points, const ShapeMeasure& measure,
+                                  MatrixX* gradient) const;
+    /// Mean size^3 of each element, n_elements.
+    [[nodiscard]] std::vector<double> volumes(const MatrixX& points) const;
+
+    std::vector<PatchTables> patches_;
+    std::vector<Chunk> chunks_;
+    int n_dofs_ = 0;
+    int n_elements_ = 0;
+    /// Corner samples left out, by element: bit i is corner i.
+    std::vector<unsigned char> singular_corners_;
+    /// Control points of each element.
+    std::vector<std::vector<int>> element_dofs_;
+    std::vector<double> reference_volumes_;
+};
+
+}  // namespace couture::meshing
