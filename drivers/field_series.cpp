@@ -156,9 +156,16 @@ void FieldSeries<d>::write_lists(const std::vector<StepSummary>& history) const 
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
             "  <Collection>\n";
-        for (const StepSummary& step : history) {
-            const fs::path file = file_of(stem, step.number, step.remeshing.has_value());
-            if (fs::exists(file)) {
+        for (std::size_t i = 0; i < history.size(); ++i) {
+            const StepSummary& step = history[i];
+            const auto file_at = [&](const StepSummary& one) {
+                return file_of(stem, one.number, one.remeshing.has_value());
+            };
+            const fs::path file = file_at(step);
+            // A time has one entry: on the new mesh where the body was meshed again.
+            const bool is_followed = i + 1 < history.size() && history[i + 1].remeshing &&
+                                     fs::exists(file_at(history[i + 1]));
+            if (fs::exists(file) && !is_followed) {
                 text += fmt::format("    <DataSet timestep=\"{}\" file=\"{}\"/>\n", step.t,
                                     escaped(file.filename().string()));
             }

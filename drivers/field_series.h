@@ -15,6 +15,7 @@ namespace couture::drivers {
 template <int d>
 class FieldSeries {
   public:
+    /// @param deck  must outlive this
     FieldSeries(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
                 const GeometryCertificate& certificate, std::filesystem::path folder);
 
@@ -27,7 +28,8 @@ class FieldSeries {
     [[nodiscard]] bool has(const StepSummary& step) const;
     /// @throws FileError  if it can't be written
     void write(const iga::AcceptedStep<d>& step) const;
-    /// Writes the lists of those fields of the history that are there.
+    /// Writes the lists of those fields of the history that are there; of a step that a remeshing
+    /// follows at the same time, only the latter's.
     void write_lists(const std::vector<StepSummary>& history) const;
     /// Draws a step.
     void draw(const iga::AcceptedStep<d>& step) const;

@@ -154,7 +154,10 @@ class SteppedRun {
             [&](const iga::AcceptedStep<d>& step) { guard([&] { keep(step); }); }, remeshing_);
         stepping_.finished = report.finished;
         stepping_.reason = report.reason;
-        stepping_.n_cuts = cuts_before + report.n_cuts;
+        if (!report.finished) {
+            // With those of the step that was given up at last.
+            stepping_.n_cuts = cuts_before + report.n_cuts;
+        }
     }
 
     void keep(const iga::AcceptedStep<d>& step) {

@@ -89,6 +89,10 @@ void read_probes(Section& output, const Deck& deck, std::vector<Probe>& probes) 
             section.mistake("t",
                             "'t' of [[output.probe]] is a time of a hyperelastic run; the "
                             "materials of this deck are linear");
+        } else if (section.has("t") && deck.stepping.control == iga::Control::arc_length) {
+            section.mistake("t",
+                            "'t' of [[output.probe]]: steps of control = 'arc_length' end at no "
+                            "given time; leave it out, or take control = 'load'");
         } else if (probe.t.value_or(0.0) > deck.stepping.end) {
             section.mistake("t", fmt::format("'t' of [[output.probe]] = {:g} is after the end of "
                                              "the run, {:g}",

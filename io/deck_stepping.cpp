@@ -144,6 +144,11 @@ void read_remeshing(Section& section, Deck& deck) {
                                           "run, {:g}",
                                           options.times.back(), deck.stepping.end));
     }
+    if (section.has("at") && deck.stepping.control == iga::Control::arc_length) {
+        section.mistake("at",
+                        "'at' of [remeshing]: steps of control = 'arc_length' end at no given "
+                        "time; take another trigger, or control = 'load'");
+    }
     options.shape_ratio =
         section.number("shape_ratio", dimensions::none, {.low = 1.0, .is_open = true});
     options.scaled_jacobian = section.number("scaled_jacobian", dimensions::none,

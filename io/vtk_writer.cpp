@@ -17,6 +17,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -388,6 +389,17 @@ void write_points_vtu(const std::filesystem::path& path, const MatrixX& position
     if (positions.cols() != 2 && positions.cols() != 3) {
         throw InputError("write_points_vtu: points have {} coordinates; 2 or 3 are taken",
                          positions.cols());
+    }
+    const std::size_t n_corners = cells.empty() ? 4 : cells.front().size();
+    for (const std::vector<int>& cell : cells) {
+        const bool is_inside = std::all_of(cell.begin(), cell.end(), [&](int point) {
+            return point >= 0 && point < positions.rows();
+        });
+        if ((n_corners != 4 && n_corners != 8) || cell.size() != n_corners || !is_inside) {
+            throw InputError(
+                "write_points_vtu: a cell has the points {}; all need 4, or all 8, of 0 to {}",
+                fmt::join(cell, ", "), positions.rows() - 1);
+        }
     }
     std::set<std::string> taken;
     check_point_arrays(arrays, positions.rows(), "point", taken);

@@ -43,8 +43,8 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
              const CommonOptions& common) {
     check_deck<d>(deck, geometry);
     static_cast<void>(locate_probes<d>(deck, geometry));
-    static_cast<void>(make_remeshing<d>(deck, geometry));
     const auto space = make_space<d>(deck, geometry);
+    static_cast<void>(make_remeshing<d>(deck, space->geometry()));
     check_problem<d>(deck, *space);
     const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
     const int n_unknowns = n_components * space->n_dofs();

@@ -287,6 +287,45 @@ TEST_CASE("couture check: hyperelastic decks", "[drivers]") {
           "block.toml: valid; patches 1, unknowns 192\n");
     const auto remeshed =
         run_couture("check block.toml --set remeshing.on_failure=true", folder.path());
-    CHECK(remeshed.exit_code == 2);
-    CHECK_THAT(remeshed.errors, Contains("remeshing is not available in this version"));
+    CHECK(remeshed.exit_code == 0);
+}
+
+TEST_CASE("couture solve: meshed again on the way, and resumed around it", "[drivers]") {
+    const TemporaryFolder folder;
+    write_deck(folder, block +
+                           "[[output.probe]]\nquantity = \"displacement_x\"\nat = [0.7, 0.2, "
+                           "0.4]\nexpect = 0.35\ntolerance = 1e-6\n");
+    const std::string run =
+        "solve block.toml --set remeshing.at=[0.5] --set output.every=4 "
+        "--set output.probe.0.tolerance=1e-6";
+    const auto result = run_couture(run + " --out a", folder.path());
+    CAPTURE(result.output, result.errors);
+    REQUIRE(result.exit_code == 0);
+    CHECK_THAT(result.errors, Contains("meshed again at t = 0.5 (time), "));
+    CHECK_THAT(result.output, Contains("remeshings 1") && Contains("worst shape ratio"));
+    CHECK(names_in(folder.path() / "a") ==
+          std::vector<std::string>{"block.json", "block.pvd", "block_0004.vtu",
+                                   "block_0005_remeshed.vtu", "block_0008.vtu", "block_0010.vtu",
+                                   "states"});
+    const Json summary = summary_of(folder, "a");
+    REQUIRE(summary["history"].size() == 11);
+    CHECK(summary["steps"] == 10);
+    CHECK(summary["remeshings"] == 1);
+    const Json report = summary["history"][5]["remeshing"];
+    CHECK(report["energy"]["after"].get<double>() ==
+          Approx(report["energy"]["before"].get<double>()).epsilon(1e-6));
+    // From before the remeshing, and from after it.
+    for (const char* last : {"0005.h5", "0005_remeshed.h5", "0007.h5"}) {
+        CAPTURE(last);
+        fs::remove_all(folder.path() / "b");
+        fs::copy(folder.path() / "a", folder.path() / "b", fs::copy_options::recursive);
+        for (const std::string& name : names_in(folder.path() / "b/states")) {
+            // "0005.h5" is less than "0005_remeshed.h5".
+            if (name > last) {
+                fs::remove(folder.path() / "b/states" / name);
+            }
+        }
+        REQUIRE(run_couture(run + " --out b --resume", folder.path()).exit_code == 0);
+        check_equal(folder, "a", "b");
+    }
 }

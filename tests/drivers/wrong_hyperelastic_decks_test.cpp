@@ -222,6 +222,10 @@ TEST_CASE("hyperelastic deck: remeshing and probes", "[drivers]") {
                         "1)"));
     CHECK_THAT(error_of(good_deck + "[analysis]\nkinematics = \"plane_strain\"\n"),
                Contains("[remeshing] is for volumes; plane bodies can't be meshed again"));
+    const std::string arc =
+        error_of(replaced("end = 2.0", "end = 2.0\ncontrol = \"arc_length\"\nmax_steps = 9"));
+    CHECK_THAT(arc, Contains("'at' of [remeshing]: steps of control = 'arc_length' end at no"));
+    CHECK_THAT(arc, Contains("'t' of [[output.probe]]: steps of control = 'arc_length' end at no"));
     CHECK_THAT(error_of(replaced("t = 0.7", "t = 2.7")),
                Contains("'t' of [[output.probe]] = 2.7 is after the end of the run, 2"));
 }

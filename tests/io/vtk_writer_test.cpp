@@ -364,3 +364,20 @@ TEST_CASE("write_vtu: a path that can't be written is named and nothing is left"
     std::filesystem::remove(folder / "file");
     CHECK(folder.is_empty());
 }
+
+TEST_CASE("write_points_vtu: cells join the points", "[io]") {
+    const TemporaryFolder folder;
+    MatrixX positions(6, 2);
+    positions << 0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1;
+    const std::vector<PointArray> arrays{{"stress", MatrixX::Random(6, 6), {}}};
+    const std::vector<std::vector<int>> cells{{0, 1, 4, 3}, {1, 2, 5, 4}};
+    write_points_vtu(folder / "gauss.vtu", positions, arrays, "", cells);
+    const auto mesh = read_vtu(folder / "gauss.vtu");
+    REQUIRE(mesh->GetNumberOfCells() == 2);
+    CHECK(mesh->GetCellType(1) == VTK_QUAD);
+    CHECK(mesh->GetCell(1)->GetPointId(2) == 5);
+    const std::vector<std::vector<int>> wrong{{0, 1, 4, 6}};
+    CHECK_THROWS_WITH(write_points_vtu(folder / "a.vtu", positions, arrays, "", wrong),
+                      "write_points_vtu: a cell has the points 0, 1, 4, 6; all need 4, or all 8, "
+                      "of 0 to 5");
+}
