@@ -19,7 +19,7 @@ constexpr int arm = n_ring_cuboids;
 
 /// Elements at one division, per cut and direction.
 constexpr int n_radial = 2;
-constexpr std::array<int, 3> n_around = {5, 3, 5};
+constexpr std::array<int, 3> n_around = {8, 3, 8};
 constexpr std::array<int, 3> n_along_z = {1, 2, 1};
 constexpr int n_along_arm = 4;
 
@@ -123,7 +123,7 @@ std::vector<PartDefinition> half_seal_parts() {
                {"arm_height", 13.0, 10.0, 16.0, "the arm's size along z, mm"},
                {"arm_length", 65.0, 50.0, 80.0, "from the axis to the cap, mm"},
                {"divisions", 1.0, 0.0, 20.0,
-                "whole number k: 128 k^3 elements of about 7 / k mm; 0: the cuboids"}},
+                "whole number k: 176 k^3 elements, finest along the hole; 0: the cuboids"}},
               3},
              make_half_seal}};
 }

@@ -22,10 +22,11 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Far from the optimum a small power of the plain mean ratio converges in few steps; growing
 /// powers then lower the worst elements.
-constexpr std::array<ShapeMeasure, 4> measures{{{.power = 2, .shape_ratio_weight = 0.0},
-                                                {.power = 4, .shape_ratio_weight = 1.0},
-                                                {.power = 8, .shape_ratio_weight = 1.0},
-                                                {.power = 16, .shape_ratio_weight = 1.0}}};
+constexpr std::array<ShapeMeasure, 4> measures{
+    {{.power = 2},
+     {.power = 4, .shape_ratio_weight = 1.0, .shape_ratio_power = 8},
+     {.power = 8, .shape_ratio_weight = 1.0, .shape_ratio_power = 16},
+     {.power = 12, .shape_ratio_weight = 1.0, .shape_ratio_power = 32}}};
 /// What is reported as energy.
 constexpr ShapeMeasure reported_measure{.power = 2, .shape_ratio_weight = 0.0};
 /// All but the last need not be minimised exactly.

@@ -436,11 +436,12 @@ double ShapeEnergy::evaluate(const MatrixX& points, const ShapeMeasure& measure,
             if (measure.shape_ratio_weight > 0.0 && singular == 0 && sum < infinity) {
                 const SmoothShapeRatio ratio =
                     smooth_shape_ratio(element.corners(), element.orientation());
-                const double power = integer_power(ratio.value, measure.power);
+                const double power = integer_power(ratio.value, measure.shape_ratio_power);
                 sum += measure.shape_ratio_weight * power;
                 for (int q = 0; q < 8 && power < infinity; ++q) {
-                    element.add_by_corner(q, measure.shape_ratio_weight * measure.power * power /
-                                                 ratio.value * ratio.gradient.col(q));
+                    element.add_by_corner(q, measure.shape_ratio_weight *
+                                                 measure.shape_ratio_power * power / ratio.value *
+                                                 ratio.gradient.col(q));
                 }
             }
             values[number] = sum;

@@ -11,10 +11,11 @@ namespace couture::meshing {
 
 /// What a ShapeEnergy measures.
 struct ShapeMeasure {
-    /// Exponent of the mean ratio and the shape ratio: the larger, the more the worst count.
+    /// Exponent of the mean ratio: the larger, the more the worst count.
     int power = 2;
-    /// Part of the shape ratio of the elements' corners beside the mean ratio.
+    /// Part of the shape ratio of the elements' corners beside the mean ratio, and its exponent.
     double shape_ratio_weight = 0.0;
+    int shape_ratio_power = 2;
     /// 0: infinite for folded elements. Else det J is replaced by
     /// (det J + sqrt(det J^2 + (2 regularization size^3)^2)) / 2, finite for all, with the
     /// element's size (see ShapeEnergy::set_reference).
@@ -41,7 +42,7 @@ struct ShapeSummary {
 
 /// How far the elements of a multipatch volume are from cubes, as a function of its control points.
 ///
-/// E = mean over elements of (mean over samples of mu^power + weight (S / sqrt(3))^power), mu =
+/// E = mean over elements of (mean over samples of mu^m + weight (S / sqrt(3))^n), mu =
 /// |J|^3 / (3 sqrt(3) det J) the inverse mean ratio of the map from the unit cube to the element,
 /// sampled at the element's corners and (degree + 1)^3 Gauss points, S the smooth shape ratio of
 /// its corners. 1 + weight for cubes, independent of size. Corner samples at which `geometry` is

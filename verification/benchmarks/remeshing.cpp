@@ -1,0 +1,181 @@
+#include "verification/benchmarks/remeshing.h"
+
+#include <cmath>
+
+#include "iga/core/error.h"
+#include "iga/post/finite_stress.h"
+#include "iga/solve/load_stepping.h"
+#include "meshing/volume/optimize_volume.h"
+#include "verification/problem_tools.h"
+
+namespace couture::verification {
+
+using namespace iga;
+
+namespace {
+
+constexpr double shear_modulus = 3.0;
+constexpr double bulk_modulus = 20.0;
+/// Ten digits of the reference value.
+constexpr double homogeneous_bound = 1e-8;
+
+constexpr const char* closed_form = "closed form, uniaxial stress";
+constexpr const char* radial_equation = "radial equation, Runge-Kutta of order 4";
+
+/// One patch with its inner control points moved by waves of this size: worth meshing again.
+MultiPatch<3> stirred(const MultiPatch<3>& mesh, double size) {
+    MultiPatch<3> result = mesh;
+    const Patch<3>& patch = mesh.patches[0];
+    MatrixX points = patch.control_points();
+    const std::array<int, 3> sizes = patch.space().sizes();
+    for (int i = 0; i < points.rows(); ++i) {
+        const std::array<int, 3> at = patch.space().indices(i);
+        bool is_inner = true;
+        for (int k = 0; k < 3; ++k) {
+            is_inner = is_inner && at[k] > 0 && at[k] + 1 < sizes[k];
+        }
+        for (int k = 0; k < 3 && is_inner; ++k) {
+            points(i, k) += size * std::sin(1.0 + 2.3 * at[(k + 1) % 3] + 1.7 * at[(k + 2) % 3]);
+        }
+    }
+    result.patches[0] = Patch<3>(patch.space(), points, patch.weights());
+    return result;
+}
+
+struct Run {
+    SteppingState<3> last;
+    RemeshingReport remeshing;
+    std::map<std::string, Vector3> reactions;
+};
+
+/// From the undeformed body to the end, meshed again at t = 0.5.
+Run run_remeshed(const MultiPatch<3>& mesh, const Problem& problem) {
+    const auto space = std::make_shared<const Space<3>>(mesh);
+    const meshing::BoundaryFeatures features(mesh);
+    Remeshing<3> remeshing;
+    remeshing.times = {0.5};
+    remeshing.mesh = [&](const MultiPatch<3>& body) {
+        return meshing::optimize_volume(body, features).volume;
+    };
+    Run run;
+    const SteppingReport report = follow_loads<3>(
+        make_start<3>(space), problem, {},
+        [&](const AcceptedStep<3>& step) {
+            run.last = step.state;
+            run.reactions = step.reactions;
+            run.remeshing = step.remeshing.value_or(run.remeshing);
+        },
+        remeshing);
+    if (!report.finished || report.n_remeshings != 1) {
+        throw SolverError("the run ended at t = {} with {} remeshings: {}", report.t,
+                          report.n_remeshings, report.reason);
+    }
+    return run;
+}
+
+/// F = F_f F_b at a stretch of 2, meshed again at 1.5.
+void composition(Recorder& recorder) {
+    recorder.set_source(closed_form);
+    for (const int degree : {1, 2}) {
+        Problem problem = neo_hookean_problem(Kinematics::solid, shear_modulus, bulk_modulus);
+        problem.supports = {make_symmetry("x_low"), make_symmetry("y_low"), make_symmetry("z_low"),
+                            make_support("x_high", 1.0, {}, {})};
+        const Run run = run_remeshed(
+            stirred(make_space<3>(part<3>("box"), degree, 4)->geometry(), 0.05), problem);
+        const FiniteState state = finite_state_at<3>(problem, run.last, 0, Vector3(0.3, 0.6, 0.7));
+        const std::string name = fmt::format("p={}: ", degree);
+        recorder.relative(name + "Cauchy stress", 8.2946926763, state.state.stress[0],
+                          homogeneous_bound);
+        recorder.relative(name + "force", 4.7206957265, run.reactions.at("x_high")[0],
+                          homogeneous_bound);
+        recorder.relative(name + "lateral stretch", 0.7544020407, 1.0 + state.H(1, 1),
+                          homogeneous_bound);
+        recorder.vanishing(name + "energy lost in the transfer",
+                           run.remeshing.energy_transferred / run.remeshing.energy_before - 1.0,
+                           homogeneous_bound);
+    }
+}
+
+/// A quarter of a tube of radii 1 and 2, its ends held: as the plane one without remeshing.
+void inflated_tube(Recorder& recorder) {
+    recorder.set_source(radial_equation);
+    Problem problem = neo_hookean_problem(Kinematics::solid, shear_modulus, bulk_modulus);
+    problem.supports = {make_symmetry("cut_x"), make_symmetry("cut_y"), make_symmetry("z_low"),
+                        make_symmetry("z_high")};
+    problem.pressures = {make_pressure("inner", 0.7906356787)};
+    const MultiPatch<3> tube =
+        make_space<3>(part<3>("thick_cylinder_3d"), 3, std::array<int, 3>{8, 6, 2})->geometry();
+    const Run run = run_remeshed(stirred(tube, 0.03), problem);
+    const SpacePtr<3> undeformed = run.last.reference->undeformed();
+    const Field<3> u{undeformed, run.last.displacement};
+    recorder.relative("inner radius", 1.25,
+                      1.0 + displacement_at<3>(u, Vector3(1.0, 0.0, 0.5))[0], 1e-4);
+    recorder.relative("outer radius", 2.1486155550,
+                      2.0 + displacement_at<3>(u, Vector3(2.0, 0.0, 0.5))[0], 1e-4);
+    recorder.relative(
+        "inner hoop stress", 1.81190212,
+        finite_state_at<3>(problem, run.last, 0, Vector3(0.0, 0.0, 0.5)).state.stress[1], 1e-2);
+    recorder.vanishing("change of volume by the new mesh",
+                       run.remeshing.volume_after / run.remeshing.volume_before - 1.0, 1e-4);
+    recorder.vanishing("change of energy by the new mesh",
+                       run.remeshing.energy_after / run.remeshing.energy_before - 1.0, 1e-3);
+    recorder.vanishing("drift of F_b", run.remeshing.gradient_drift, 2e-2);
+    recorder.relative("worst shape ratio, after over before", 0.0,
+                      run.remeshing.shape_ratio_after / run.remeshing.shape_ratio_before, 1.0);
+}
+
+/// Radii 1 and 2, inner pressure: the largest that it bears, and a state beyond.
+void limit_point(Recorder& recorder) {
+    recorder.set_source(radial_equation);
+    MultiPatch<2> meridian = part<2>("half_annulus");
+    const Interface<2>& equator = meridian.interfaces.at(0);
+    meridian.boundary_sets["equator"] = {make_side<2>(equator.first_patch, equator.first_side)};
+    Problem problem =
+        neo_hookean_problem(Kinematics::axisymmetric, shear_modulus, bulk_modulus);
+    problem.supports = {make_support("axis", 0.0, {}), make_support("equator", {}, 0.0)};
+    constexpr double pressure = 3.0;
+    problem.pressures = {make_pressure("inner", pressure)};
+    const SpacePtr<2> space = make_space<2>(meridian, 3, {8, 4});
+    SteppingOptions options;
+    options.control = Control::arc_length;
+    options.max_steps = 40;
+    std::vector<Vector2> path{Vector2(1.0, 0.0)};
+    const SteppingReport report = follow_loads<2>(
+        make_start<2>(space), problem, options, [&](const AcceptedStep<2>& step) {
+            const Field<2> u{space, step.state.displacement};
+            path.emplace_back(1.0 + displacement_at<2>(u, Vector3(1.0, 0.0, 0.0))[0],
+                              pressure * step.state.t);
+        });
+    if (!report.finished) {
+        throw SolverError("{}", report.reason);
+    }
+    // The top of the parabola through the highest three points.
+    std::size_t top = 1;
+    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+        top = path[i][1] > path[top][1] ? i : top;
+    }
+    const auto slope = [&](std::size_t i) {
+        return (path[i + 1][1] - path[i][1]) / (path[i + 1][0] - path[i][0]);
+    };
+    const double first = 0.5 * (path[top - 1][0] + path[top][0]);
+    const double second = 0.5 * (path[top][0] + path[top + 1][0]);
+    const double bend = (slope(top) - slope(top - 1)) / (second - first);
+    const double radius = first - slope(top - 1) / bend;
+    const double slope_at_top = slope(top - 1) + bend * (path[top][0] - first);
+    const double highest =
+        path[top][1] + 0.5 * slope_at_top * (radius - path[top][0]);
+    recorder.relative("largest pressure", 2.24221, highest, 2e-4);
+    recorder.relative("inner radius there", 1.7536, radius, 1e-2);
+    recorder.absolute("steps beyond it with falling pressure", 1.0,
+                      path.back()[1] < highest && path.back()[0] > radius + 0.3 ? 1.0 : 0.0, 0.0);
+}
+
+}  // namespace
+
+std::vector<Case> remeshing_cases() {
+    return {{"neo-Hookean, meshed again: composition", false, composition},
+            {"neo-Hookean, meshed again: inflated tube", false, inflated_tube},
+            {"neo-Hookean, limit point of a sphere", false, limit_point}};
+}
+
+}  // namespace couture::verification
