@@ -1,7 +1,6 @@
 #include "verification/benchmarks/hyperelastic.h"
 
 #include "iga/core/error.h"
-#include "iga/solve/load_stepping.h"
 #include "verification/problem_tools.h"
 
 namespace couture::verification {
@@ -21,26 +20,7 @@ constexpr const char* closed_form = "closed form, W = mu/2 (J^(-2/3) I1 - 3) + k
 constexpr const char* radial_equation = "radial equation, Runge-Kutta of order 4";
 
 Problem neo_hookean(Kinematics kinematics, double mu = shear_modulus, double kappa = bulk_modulus) {
-    Problem problem;
-    problem.kinematics = kinematics;
-    problem.materials.resize(1);
-    problem.materials[0].name = "rubber";
-    problem.materials[0].hyperelastic = make_hyperelastic(StoredEnergy::neo_hookean, mu, kappa);
-    return problem;
-}
-
-/// The last state of a run, which must reach its end.
-template <int d>
-AcceptedStep<d> run_to_end(const SpacePtr<d>& space, const Problem& problem,
-                           const SteppingOptions& options = {}) {
-    AcceptedStep<d> last;
-    const SteppingReport report =
-        follow_loads<d>(make_start<d>(space), problem, options,
-                        [&](const AcceptedStep<d>& step) { last = step; });
-    if (!report.finished) {
-        throw SolverError("{}", report.reason);
-    }
-    return last;
+    return neo_hookean_problem(kinematics, mu, kappa);
 }
 
 /// Cauchy stress at a parameter of patch 0.
