@@ -8,6 +8,7 @@
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
+#include "iga/topology/multipatch_interpolate.h"
 #include "meshing/parts/parts.h"
 
 namespace couture::drivers {
@@ -128,13 +129,15 @@ ProblemSize estimate_size(const io::Deck& deck, const iga::MultiPatch<d>& geomet
         double blocks = 1.0;
         for (int k = 0; k < d; ++k) {
             const iga::KnotVector& knots = patch.knots(k);
-            const int degree = std::max(deck.discretization.degree.value_or(0), knots.degree());
+            const bool is_exact = !deck.discretization.interpolates_geometry;
+            const int given = deck.discretization.degree.value_or(knots.degree());
+            const int degree = is_exact ? std::max(given, knots.degree()) : given;
             const double now = knots.n_elements();
             const double wanted =
                 elements.empty() ? now : elements[std::min<std::size_t>(k, elements.size() - 1)];
             // At least: new knots simple, those of the geometry as often as they are.
             const double n = std::max(now * std::ceil(wanted / now) + degree,
-                                      static_cast<double>(knots.n_basis()));
+                                      is_exact ? static_cast<double>(knots.n_basis()) : 0.0);
             functions *= n;
             blocks *= n * std::min(2.0 * degree + 1.0, n);
         }
@@ -177,7 +180,9 @@ iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geom
     }
     try {
         return std::make_shared<const iga::Space<d>>(
-            iga::refine<d>(geometry, discretization.degree, elements));
+            discretization.interpolates_geometry
+                ? iga::interpolate<d>(geometry, discretization.degree, elements)
+                : iga::refine<d>(geometry, discretization.degree, elements));
     } catch (const InputError& error) {
         throw InputError("{}: [discretization]: {}", discretization.source, error.what());
     }

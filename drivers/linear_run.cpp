@@ -59,8 +59,9 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
 
     timer = {};
     Summary summary;
-    summary.volume = iga::body_volume(deck.problem, geometry);
-    // Locations stay valid: refinement keeps every patch's parameters.
+    summary.volume = iga::body_volume(
+        deck.problem, deck.discretization.interpolates_geometry ? space->geometry() : geometry);
+    // Locations stay valid: refinement and interpolation keep every patch's parameters.
     summary.probes = evaluate_probes<d>(deck, locations, result, summary.volume);
     add_phase("probes", timer.seconds());
     timer = {};

@@ -166,6 +166,8 @@ void read_discretization(Section& section, Discretization& discretization) {
                                                 "expected one, or one per direction",
                                                 discretization.elements.size()));
     }
+    discretization.interpolates_geometry =
+        section.choice("geometry", {"exact", "interpolated"}) == "interpolated";
     discretization.n_gauss_points = section.integer("gauss_points", 1, max_points);
 }
 

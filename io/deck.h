@@ -29,6 +29,9 @@ struct Discretization {
     std::optional<int> degree;
     /// Per direction; one number: the same in all; empty: those of the geometry.
     std::vector<int> elements;
+    /// The body is the splines of this degree through the geometry, which may be lower than its
+    /// own; else it is the geometry itself.
+    bool interpolates_geometry = false;
     std::optional<int> n_gauss_points;
     std::string source;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "iga/topology/element_quality.h"
@@ -21,6 +22,9 @@ Json to_array(const Column& column) {
     }
     return result;
 }
+
+/// JSON has no infinity.
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 template <int d>
 Json describe_patch(const iga::MultiPatch<d>& multipatch, int number) {
@@ -80,6 +84,12 @@ Json describe(const iga::MultiPatch<d>& multipatch) {
         result["mean_scaled_jacobian"] = quality.mean_scaled_jacobian;
         result["worst_patch"] = quality.worst_patch;
         result["worst_at"] = to_array(quality.worst_xi);
+        result["max_shape_ratio"] = finite_or_null(quality.max_shape_ratio);
+        result["mean_shape_ratio"] = finite_or_null(quality.mean_shape_ratio);
+        result["worst_shape_ratio_patch"] = quality.worst_shape_ratio_patch;
+        result["worst_shape_ratio_at"] = to_array(quality.worst_shape_ratio_xi);
+        result["max_angle_deviation"] = quality.max_angle_deviation;
+        result["mean_angle_deviation"] = quality.mean_angle_deviation;
     }
     result["signature"] = iga::signature(multipatch);
     return result;
@@ -102,6 +112,11 @@ std::string count(std::size_t n, const char* one, const char* many) {
 /// "2 x 2 x 3".
 std::string product(const Json& numbers) {
     return fmt::format("{}", fmt::join(numbers.get<std::vector<int>>(), " x "));
+}
+
+/// "1.73205"; what JSON has no number for is infinite.
+std::string number(const Json& value) {
+    return value.is_null() ? "infinite" : fmt::format("{:.6g}", value.get<double>());
 }
 
 /// "(0, 0.5, 1)".
@@ -174,6 +189,13 @@ std::string spline_info_text(const SplineFile& file) {
             fmt::format("scaled Jacobian: smallest {:.6g} (patch {} at {}), mean {:.6g}\n",
                         info["min_scaled_jacobian"].get<double>(), info["worst_patch"].get<int>(),
                         point(info["worst_at"]), info["mean_scaled_jacobian"].get<double>());
+        text +=
+            fmt::format("shape ratio: largest {} (patch {} at {}), mean {}\n",
+                        number(info["max_shape_ratio"]), info["worst_shape_ratio_patch"].get<int>(),
+                        point(info["worst_shape_ratio_at"]), number(info["mean_shape_ratio"]));
+        text += fmt::format("angle deviation: largest {:.6g}, mean {:.6g}\n",
+                            info["max_angle_deviation"].get<double>(),
+                            info["mean_angle_deviation"].get<double>());
     }
     text += patch_list(patches, "folded",
                        [](const Json& patch) { return patch["validity"] == "folded"; });

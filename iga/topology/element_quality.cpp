@@ -36,6 +36,12 @@ double position_in(const KnotVector& knots, int element, double position) {
     return (1.0 - position) * b[element] + position * b[element + 1];
 }
 
+template <int d>
+struct PointOfMap {
+    Vector<d> x;
+    Matrix<d> J;
+};
+
 /// One patch: all values needed at samples, and where they are.
 template <int d>
 struct Sampler {
@@ -87,8 +93,16 @@ struct Sampler {
         return result;
     }
 
-    [[nodiscard]] Matrix<d> jacobian(const std::array<int, d>& e,
-                                     const std::array<int, d>& q) const {
+    [[nodiscard]] Vector<d> middle(const std::array<int, d>& e) const {
+        Vector<d> result;
+        for (int k = 0; k < d; ++k) {
+            result[k] = position_in(patch.knots(k), e[k], 0.5);
+        }
+        return result;
+    }
+
+    [[nodiscard]] PointOfMap<d> point(const std::array<int, d>& e,
+                                      const std::array<int, d>& q) const {
         // Rows: value, then derivatives; columns: coordinates and weight.
         Eigen::Matrix<double, d + 1, d + 1> sums = Eigen::Matrix<double, d + 1, d + 1>::Zero();
         std::array<const Values1D*, d> table;
@@ -116,7 +130,10 @@ struct Sampler {
                 sums.col(c) += rows(function, c) * N;
             }
         }
-        Matrix<d> J;
+        PointOfMap<d> result;
+        Matrix<d>& J = result.J;
+        const double weight = patch.is_rational() ? sums(0, d) : 1.0;
+        result.x = sums.row(0).template head<d>().transpose() / weight;
         for (int k = 0; k < d; ++k) {
             for (int i = 0; i < d; ++i) {
                 J(i, k) =
@@ -125,13 +142,12 @@ struct Sampler {
                         : sums(k + 1, i);
             }
             // What rounding leaves of a vanishing derivative has no direction.
-            const double weight = patch.is_rational() ? sums(0, d) : 1.0;
             const double terms = table[k]->N.row(1).template lpNorm<1>() * largest / weight;
             if (J.col(k).norm() <= rounding * terms) {
                 J.col(k).setZero();
             }
         }
-        return J;
+        return result;
     }
 };
 
@@ -146,11 +162,15 @@ struct ElementSamples {
     std::vector<Sample> samples;
     std::vector<std::array<int, d>> positions;
     double det_sum = 0.0;
+    double shape_ratio = 0.0;
+    double angle_deviation = 0.0;
 };
 
 template <int d>
 ElementSamples<d> sample_element(const Sampler<d>& sampler, const std::array<int, d>& element) {
     ElementSamples<d> result;
+    CellCorners<d> corners;
+    int n_corners = 0;
     int n_positions = 1;
     for (int k = 0; k < d; ++k) {
         n_positions *= static_cast<int>(sampler.positions[k].size());
@@ -165,13 +185,32 @@ ElementSamples<d> sample_element(const Sampler<d>& sampler, const std::array<int
             n_ends += q[k] == 0 || q[k] == n - 1 ? 1 : 0;
         }
         if (n_ends == 0 || n_ends == d) {
-            const Matrix<d> J = sampler.jacobian(element, q);
+            const auto [x, J] = sampler.point(element, q);
             result.samples.push_back({scaled_jacobian<d>(J), n_ends == d});
             result.positions.push_back(q);
             result.det_sum += n_ends == 0 ? J.determinant() : 0.0;
+            if (n_ends == d) {
+                corners.col(n_corners++) = x;
+            }
         }
     }
+    result.shape_ratio = shape_ratio(corners);
+    result.angle_deviation = angle_deviation(corners);
     return result;
+}
+
+/// Takes the largest values and adds to the sums, which become means later.
+template <int d>
+void add_shape(const Sampler<d>& sampler, int patch, int element, const ElementSamples<d>& samples,
+               QualitySummary<d>& summary) {
+    if (samples.shape_ratio > summary.max_shape_ratio) {
+        summary.max_shape_ratio = samples.shape_ratio;
+        summary.worst_shape_ratio_patch = patch;
+        summary.worst_shape_ratio_xi = sampler.middle(sampler.element(element));
+    }
+    summary.max_angle_deviation = std::max(summary.max_angle_deviation, samples.angle_deviation);
+    summary.mean_shape_ratio += samples.shape_ratio;
+    summary.mean_angle_deviation += samples.angle_deviation;
 }
 
 }  // namespace
@@ -190,6 +229,7 @@ QualitySummary<d> element_quality(const MultiPatch<d>& multipatch) {
     QualitySummary<d> summary;
     double total = 0.0;
     std::size_t n_samples = 0;
+    std::size_t n_elements = 0;
     for (int p = 0; p < multipatch.n_patches(); ++p) {
         const Patch<d>& patch = multipatch.patches[p];
         if (patch.dimension() != d) {
@@ -208,6 +248,8 @@ QualitySummary<d> element_quality(const MultiPatch<d>& multipatch) {
         }
         const double orientation = det_sum < 0.0 ? -1.0 : 1.0;
         for (int e = 0; e < sampler.n_elements(); ++e) {
+            add_shape<d>(sampler, p, e, elements[e], summary);
+            ++n_elements;
             for (std::size_t i = 0; i < elements[e].samples.size(); ++i) {
                 const Sample& sample = elements[e].samples[i];
                 const double quality = orientation * sample.quality;
@@ -226,6 +268,8 @@ QualitySummary<d> element_quality(const MultiPatch<d>& multipatch) {
     }
     if (n_samples > 0) {
         summary.mean_scaled_jacobian = total / static_cast<double>(n_samples);
+        summary.mean_shape_ratio /= static_cast<double>(n_elements);
+        summary.mean_angle_deviation /= static_cast<double>(n_elements);
     }
     return summary;
 }

@@ -12,6 +12,7 @@
 #include "meshing/parts/box.h"
 #include "meshing/parts/cook.h"
 #include "meshing/parts/cylindrical_shell.h"
+#include "meshing/parts/half_seal.h"
 #include "meshing/parts/hollow_sphere.h"
 #include "meshing/parts/nafems.h"
 #include "meshing/parts/o_grid.h"
@@ -26,9 +27,10 @@ namespace {
 const std::vector<PartDefinition>& definitions() {
     static const std::vector<PartDefinition> all = [] {
         std::vector<PartDefinition> list;
-        for (const auto& group : {pipe_tee_parts, box_parts, twisted_box_parts, annulus_parts,
-                                  o_grid_parts, plate_with_hole_parts, hollow_sphere_parts,
-                                  nafems_parts, cook_parts, cylindrical_shell_parts}) {
+        for (const auto& group :
+             {pipe_tee_parts, box_parts, twisted_box_parts, annulus_parts, o_grid_parts,
+              plate_with_hole_parts, hollow_sphere_parts, nafems_parts, cook_parts,
+              cylindrical_shell_parts, half_seal_parts}) {
             const std::vector<PartDefinition> some = group();
             list.insert(list.end(), some.begin(), some.end());
         }

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -132,6 +133,36 @@ TEST_CASE("couture solve: a body that nothing loads is warned of", "[drivers]") 
     CHECK(result.exit_code == 0);
     CHECK(Json::parse(result.output)["warnings"].at(0) ==
           "case 'default': nothing loads the body, its displacement is zero");
+}
+
+TEST_CASE("couture solve: an interpolated geometry is solved at a degree below its own",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "ring.toml",
+                   "[geometry]\npart = \"quarter_annulus_3d\"\n[discretization]\ndegree = "
+                   "1\nelements = [1, 8, 1]\ngeometry = \"interpolated\"\n[material.any]\n"
+                   "youngs_modulus = 1e5\npoissons_ratio = 0.3\n[[fixed]]\non = \"cut_y\"\n"
+                   "[[traction]]\non = \"cut_x\"\nx = 1.0\n[output]\nvtu = false\n");
+    const auto result = run_couture("solve --json ring.toml", folder.path());
+    CHECK(result.exit_code == 0);
+    const Json object = Json::parse(result.output);
+    CHECK(object["unknowns"] == 3 * 2 * 9 * 2);
+    // Chords of a Bezier arc with weight cos 45 degrees at eighths of its parameter.
+    double area = 0.0;
+    double previous = 0.0;
+    for (int i = 1; i <= 8; ++i) {
+        const double t = i / 8.0;
+        const double angle = std::atan2(t * (1.0 - t) * std::sqrt(2.0) + t * t,
+                                        (1.0 - t) * (1.0 - t) + t * (1.0 - t) * std::sqrt(2.0));
+        area += 0.5 * (4.0 - 1.0) * std::sin(angle - previous);
+        previous = angle;
+    }
+    CHECK(object["volume"].get<double>() == Approx(area).epsilon(1e-10));
+    const auto exact =
+        run_couture("solve --json ring.toml --set discretization.geometry=exact", folder.path());
+    CHECK(exact.exit_code == 2);
+    CHECK(exact.errors.find("refine: degree 1 is below degree 2 of the geometry") !=
+          std::string::npos);
 }
 
 TEST_CASE("couture check: folds that no quadrature point sees are warned of", "[drivers]") {

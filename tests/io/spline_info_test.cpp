@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "iga/topology/element_quality.h"
 #include "tests/data_folder.h"
 #include "tests/io/sample_splines.h"
 
@@ -62,6 +63,13 @@ TEST_CASE("spline_info_json: holds what the multipatch holds", "[io]") {
     CHECK(first["left_handed"] == false);
     CHECK(first["min_jacobian"] > 0.5);
     CHECK(first["min_scaled_jacobian"] > 0.9);
+    const iga::QualitySummary<3> quality = iga::element_quality(pair);
+    CHECK(info["max_shape_ratio"] == quality.max_shape_ratio);
+    CHECK(info["mean_shape_ratio"] == quality.mean_shape_ratio);
+    CHECK(info["worst_shape_ratio_patch"] == quality.worst_shape_ratio_patch);
+    CHECK(info["worst_shape_ratio_at"][0] == quality.worst_shape_ratio_xi[0]);
+    CHECK(info["max_angle_deviation"] == quality.max_angle_deviation);
+    CHECK(info["mean_angle_deviation"] == quality.mean_angle_deviation);
     CHECK(info["n_interfaces"] == 1);
     CHECK(info["interfaces"] == Json({"patch 0 side 0:high and patch 1 side 0:low"}));
     CHECK(info["n_outer_sides"] == 10);
@@ -83,6 +91,8 @@ TEST_CASE("spline_info_text: says the same in lines", "[io]") {
     CHECK_THAT(text, Contains("\ncontrol points: 96\nbounding box: ("));
     CHECK_THAT(text, Contains("\nvolume: "));
     CHECK_THAT(text, Contains("\nscaled Jacobian: smallest 0."));
+    CHECK_THAT(text,
+               Contains("\nshape ratio: largest ") && Contains("\nangle deviation: largest "));
     CHECK_THAT(text, Contains("\nsignature: "));
     CHECK_THAT(text, Catch::EndsWith("\nnote: a note\n"));
     CHECK_THAT(text, !Contains("folded"));
@@ -189,4 +199,18 @@ TEST_CASE("spline_info: two patches of a public volume are folded at a corner", 
     CHECK(info["patches"][5]["min_jacobian"] < 0.0);
     CHECK(info["worst_patch"] == 8);
     CHECK_THAT(io::spline_info_text(file), Contains("\nfolded: patch 5, patch 8\n"));
+}
+
+TEST_CASE("spline_info: an infinite shape ratio is null and said in words", "[io]") {
+    // One side of the box has no area.
+    MatrixX wedge(8, 3);
+    wedge << 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 0, 1, 1, 1, 1;
+    const iga::KnotVector knots = iga::KnotVector::uniform(1, 1);
+    iga::MultiPatch<3> volume;
+    volume.patches = {{{{knots, knots, knots}}, wedge}};
+    const io::SplineFile file{volume, "GeoPDEs text", {}};
+    CHECK(info_of(file)["max_shape_ratio"].is_null());
+    CHECK_THAT(io::spline_info_text(file),
+               Contains("\nshape ratio: largest infinite (patch 0 at (0.5, 0.5, 0.5)), mean "
+                        "infinite\nangle deviation: largest "));
 }

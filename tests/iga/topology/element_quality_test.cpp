@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "iga/core/error.h"
+#include "iga/spline/refine.h"
 #include "iga/spline/shapes.h"
 
 using namespace couture;
@@ -69,6 +70,33 @@ TEST_CASE("element_quality: a collapsed side counts as 0 at its corners", "[topo
     CHECK(std::abs(summary.min_at_corners) < rounding);
     CHECK(summary.min_at_gauss_points > 0.5);
     CHECK(summary.worst_patch == 0);
+}
+
+TEST_CASE("element_quality: shapes are those of the elements, not of the patch", "[topology]") {
+    // Elements of sizes 1, 1, 1 and 3, 1, 1.
+    const Patch<3> long_box = make_box<3>(Vector3(4.0, 1.0, 1.0));
+    const std::vector<double> cut = {0.25};
+    const std::array<Refinement, 3> cuts = {insert_knots(long_box.knots(0), cut),
+                                            refine(long_box.knots(1), 1, 1),
+                                            refine(long_box.knots(2), 1, 1)};
+    MultiPatch<3> boxes = single<3>(make_box<3>(Vector3(2.0, 2.0, 2.0)));
+    boxes.patches.push_back(refine<3>(long_box, cuts));
+    const QualitySummary<3> summary = element_quality(boxes);
+    CHECK(summary.max_shape_ratio == Approx(std::sqrt(11.0)));
+    CHECK(summary.mean_shape_ratio == Approx((2.0 * std::sqrt(3.0) + std::sqrt(11.0)) / 3.0));
+    CHECK(summary.worst_shape_ratio_patch == 1);
+    CHECK(summary.worst_shape_ratio_xi == Vector3(0.625, 0.5, 0.5));
+    CHECK(summary.max_angle_deviation < rounding);
+    CHECK(summary.mean_angle_deviation < rounding);
+}
+
+TEST_CASE("element_quality: shapes of rational elements have corners on the arc", "[topology]") {
+    // One element with corners (1, 0), (2, 0), (0, 1), (0, 2): angles 45, 135 degrees.
+    const QualitySummary<2> summary = element_quality(single<2>(make_quarter_annulus(1.0, 2.0)));
+    CHECK(summary.max_angle_deviation == Approx(std::numbers::pi));
+    CHECK(summary.mean_angle_deviation == Approx(std::numbers::pi));
+    // Mean (3/4, 3/4) to (2, 0); to the middle (1/2, 1/2) of the inner chord.
+    CHECK(summary.max_shape_ratio == Approx(std::hypot(1.25, 0.75) / (std::sqrt(2.0) / 4.0)));
 }
 
 TEST_CASE("element_quality: surfaces in space are refused", "[topology]") {
