@@ -84,6 +84,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_flag("--linear", solve->linear,
                   "write linear cells for programs that read no splines");
     sub->add_flag("--png", solve->png, "draw the deformed part");
+    sub->add_flag("--resume", solve->resume,
+                  "go on from the newest state of a hyperelastic run in the folder of the results");
 
     sub = add_command(app, command, "check", "validate a deck without running it",
                       [&command, solve] { return run_check(*solve, command.common); });

@@ -23,6 +23,10 @@ std::string place_of(const io::Probe& probe) {
     return probe.on.empty() ? "" : fmt::format(" on '{}'", probe.on);
 }
 
+std::string time_of(const io::Probe& probe) {
+    return probe.t ? fmt::format(", t = {:g}", *probe.t) : "";
+}
+
 int axis_of(const std::string& quantity) { return quantity.back() - 'x'; }
 
 int voigt_index(const std::string& quantity) {
@@ -31,8 +35,9 @@ int voigt_index(const std::string& quantity) {
     return static_cast<int>(std::find(names.begin(), names.end(), component) - names.begin());
 }
 
-template <int d>
-double scalar_of(const io::Probe& probe, const iga::CaseResult<d>& result) {
+/// @param result  a load case or a step
+template <typename Result>
+double scalar_of(const io::Probe& probe, const Result& result) {
     if (probe.quantity == "energy") {
         return result.energy;
     }
@@ -41,6 +46,28 @@ double scalar_of(const io::Probe& probe, const iga::CaseResult<d>& result) {
     }
     const auto reaction = result.reactions.find(probe.on);
     return reaction == result.reactions.end() ? 0.0 : reaction->second[axis_of(probe.quantity)];
+}
+
+double displacement_quantity(const std::string& quantity, const VectorX& u) {
+    if (quantity == "displacement_magnitude") {
+        return u.norm();
+    }
+    const int axis = quantity == "potential" ? 0 : axis_of(quantity);
+    return axis < u.size() ? u[axis] : 0.0;
+}
+
+double state_quantity(const std::string& quantity, const iga::StressState& state) {
+    if (quantity == "von_mises") {
+        return iga::von_mises(state.stress);
+    }
+    if (quantity.starts_with("principal_")) {
+        return iga::principal_stresses(state.stress)[quantity.back() - '1'];
+    }
+    if (quantity.starts_with("flux_")) {
+        return state.stress[axis_of(quantity)];
+    }
+    const int component = voigt_index(quantity);
+    return quantity.starts_with("strain") ? state.strain[component] : state.stress[component];
 }
 
 }  // namespace
@@ -93,26 +120,11 @@ template <int d>
 double quantity_at(const iga::Problem& problem, const iga::CaseResult<d>& result,
                    const std::string& quantity, const iga::Location<d>& location) {
     if (quantity == "potential" || quantity.starts_with("displacement")) {
-        const VectorX u = result.displacement.value(location.patch, location.xi);
-        if (quantity == "displacement_magnitude") {
-            return u.norm();
-        }
-        const int axis = quantity == "potential" ? 0 : axis_of(quantity);
-        return axis < u.size() ? u[axis] : 0.0;
+        return displacement_quantity(quantity,
+                                     result.displacement.value(location.patch, location.xi));
     }
-    const iga::StressState state =
-        iga::stress_at<d>(problem, result.displacement, result.name, location.patch, location.xi);
-    if (quantity == "von_mises") {
-        return iga::von_mises(state.stress);
-    }
-    if (quantity.starts_with("principal_")) {
-        return iga::principal_stresses(state.stress)[quantity.back() - '1'];
-    }
-    if (quantity.starts_with("flux_")) {
-        return state.stress[axis_of(quantity)];
-    }
-    const int component = voigt_index(quantity);
-    return quantity.starts_with("strain") ? state.strain[component] : state.stress[component];
+    return state_quantity(quantity, iga::stress_at<d>(problem, result.displacement, result.name,
+                                                      location.patch, location.xi));
 }
 
 template <int d>
@@ -129,23 +141,49 @@ std::vector<ProbeResult> evaluate_probes(
             throw InputError("{}: there is no result for load case '{}'", probe.source,
                              probe.load_case);
         }
-        ProbeResult value;
-        value.name = probe.name.empty() ? probe.quantity + place_of(probe) : probe.name;
-        value.quantity = probe.quantity;
-        value.load_case = probe.load_case;
+        double value = 0.0;
         if (probe.quantity == "volume") {
-            value.value = volume;
+            value = volume;
         } else if (locations[i]) {
-            value.value = quantity_at<d>(deck.problem, *load_case, probe.quantity, *locations[i]);
+            value = quantity_at<d>(deck.problem, *load_case, probe.quantity, *locations[i]);
         } else {
-            value.value = scalar_of<d>(probe, *load_case);
+            value = scalar_of(probe, *load_case);
         }
-        value.expected = probe.expect;
-        value.allowed_error = probe.allowed_error();
-        value.passed = probe.passes(value.value);
-        values.push_back(std::move(value));
+        values.push_back(probe_result(probe, value));
     }
     return values;
+}
+
+ProbeResult probe_result(const io::Probe& probe, double value) {
+    ProbeResult result;
+    result.name =
+        probe.name.empty() ? probe.quantity + place_of(probe) + time_of(probe) : probe.name;
+    result.quantity = probe.quantity;
+    result.load_case = probe.load_case;
+    result.t = probe.t;
+    result.value = value;
+    result.expected = probe.expect;
+    result.allowed_error = probe.allowed_error();
+    result.passed = probe.passes(value);
+    return result;
+}
+
+template <int d>
+double quantity_of(const iga::Problem& problem, const iga::AcceptedStep<d>& step,
+                   const io::Probe& probe, const std::optional<iga::Location<d>>& location) {
+    if (probe.quantity == "volume") {
+        return iga::deformed_volume<d>(problem, step.state);
+    }
+    if (!location) {
+        return scalar_of(probe, step);
+    }
+    if (probe.quantity.starts_with("displacement")) {
+        const iga::Field<d> u{step.state.reference->space, step.state.displacement};
+        return displacement_quantity(probe.quantity, u.value(location->patch, location->xi));
+    }
+    const iga::FiniteState state =
+        iga::finite_state_at<d>(problem, step.state, location->patch, location->xi);
+    return state_quantity(probe.quantity, state.state);
 }
 
 template std::vector<std::optional<iga::Location<2>>> locate_probes<2>(const io::Deck&,
@@ -162,5 +200,9 @@ template double quantity_at<2>(const iga::Problem&, const iga::CaseResult<2>&, c
                                const iga::Location<2>&);
 template double quantity_at<3>(const iga::Problem&, const iga::CaseResult<3>&, const std::string&,
                                const iga::Location<3>&);
+template double quantity_of<2>(const iga::Problem&, const iga::AcceptedStep<2>&, const io::Probe&,
+                               const std::optional<iga::Location<2>>&);
+template double quantity_of<3>(const iga::Problem&, const iga::AcceptedStep<3>&, const io::Probe&,
+                               const std::optional<iga::Location<3>>&);
 
 }  // namespace couture::drivers

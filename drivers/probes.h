@@ -1,8 +1,9 @@
 #pragma once
 
 #include "drivers/summary.h"
-#include "iga/post/locator.h"
+#include "iga/post/finite_stress.h"
 #include "iga/solve/linear_static.h"
+#include "iga/topology/locator.h"
 #include "io/deck.h"
 
 namespace couture::drivers {
@@ -21,9 +22,21 @@ template <int d>
     const io::Deck& deck, const std::vector<std::optional<iga::Location<d>>>& locations,
     const iga::LinearStaticResult<d>& result, double volume);
 
+/// The label of a probe, and whether a value passes.
+[[nodiscard]] ProbeResult probe_result(const io::Probe& probe, double value);
+
 /// Value of a field quantity ("stress_xx", "displacement_magnitude", ...) at a place.
 template <int d>
 [[nodiscard]] double quantity_at(const iga::Problem& problem, const iga::CaseResult<d>& result,
                                  const std::string& quantity, const iga::Location<d>& location);
+
+/// Of an accepted step at finite strain: Green-Lagrange strains, Cauchy stresses, the volume of
+/// the deformed body, and what the step itself knows.
+///
+/// @param location  on the step's mesh, for quantities of a point
+template <int d>
+[[nodiscard]] double quantity_of(const iga::Problem& problem, const iga::AcceptedStep<d>& step,
+                                 const io::Probe& probe,
+                                 const std::optional<iga::Location<d>>& location);
 
 }  // namespace couture::drivers

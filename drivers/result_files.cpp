@@ -14,8 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> voigt_names = {"xx", "yy", "zz", "yz", "xz", "xy"};
-
 /// Coefficients of von Mises and principal stresses at the control points of a stress field: exact
 /// where the stress is constant, of the field's own accuracy elsewhere.
 MatrixX map_rows(const MatrixX& stresses, int n_columns,
@@ -27,10 +25,24 @@ MatrixX map_rows(const MatrixX& stresses, int n_columns,
     return result;
 }
 
+}  // namespace
+
+const std::vector<std::string>& voigt_names() {
+    static const std::vector<std::string> names = {"xx", "yy", "zz", "yz", "xz", "xy"};
+    return names;
+}
+
 MatrixX von_mises_rows(const MatrixX& stresses) {
     return map_rows(stresses, 1,
                     [](const Vector<6>& s) { return VectorX::Constant(1, iga::von_mises(s)); });
 }
+
+MatrixX principal_rows(const MatrixX& stresses) {
+    return map_rows(stresses, 3,
+                    [](const Vector<6>& s) { return VectorX(iga::principal_stresses(s)); });
+}
+
+namespace {
 
 template <int d>
 std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
@@ -40,12 +52,9 @@ std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
                 {"flux", stress.leftCols(3), {}}};
     }
     return {{"displacement", result.displacement.coefficients, {}},
-            {"stress", stress, voigt_names},
+            {"stress", stress, voigt_names()},
             {"von_mises", von_mises_rows(stress), {}},
-            {"principal",
-             map_rows(stress, 3,
-                      [](const Vector<6>& s) { return VectorX(iga::principal_stresses(s)); }),
-             {"1", "2", "3"}}};
+            {"principal", principal_rows(stress), {"1", "2", "3"}}};
 }
 
 }  // namespace
@@ -97,7 +106,7 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
             if (deck.problem.physics == iga::Physics::poisson) {
                 arrays = {{"flux", points.stresses.leftCols(3), {}}};
             } else {
-                arrays = {{"stress", points.stresses, voigt_names},
+                arrays = {{"stress", points.stresses, voigt_names()},
                           {"von_mises", von_mises_rows(points.stresses), {}}};
             }
             io::write_points_vtu(files.back(), points.points, arrays, origin);

@@ -17,6 +17,12 @@ template <int d>
     const io::Deck& deck, const iga::SpacePtr<d>& space, const iga::LinearStaticResult<d>& result,
     const GeometryCertificate& certificate, const std::filesystem::path& folder);
 
+/// Names of the components of stresses and strains in result files.
+[[nodiscard]] const std::vector<std::string>& voigt_names();
+/// Von Mises stress and principal stresses of each row of stresses (n x 6).
+[[nodiscard]] MatrixX von_mises_rows(const MatrixX& stresses);
+[[nodiscard]] MatrixX principal_rows(const MatrixX& stresses);
+
 /// Deck text and hash, program version, signature and certificate, as JSON: what every result file
 /// carries.
 template <int d>

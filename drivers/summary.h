@@ -9,6 +9,7 @@
 #include "iga/core/timer.h"
 #include "iga/core/types.h"
 #include "iga/linalg/sparse_solver.h"
+#include "iga/solve/load_stepping.h"
 
 namespace couture::drivers {
 
@@ -18,6 +19,8 @@ struct ProbeResult {
     std::string name;
     std::string quantity;
     std::string load_case;
+    /// In a run over time; nothing: at its end.
+    std::optional<double> t;
     double value = 0.0;
     std::optional<double> expected;
     /// Largest accepted |value - expected|.
@@ -33,6 +36,36 @@ struct CaseSummary {
     Vector3 foundation_force = Vector3::Zero();
     std::map<std::string, Vector3> reactions;
     double balance = 0.0;
+};
+
+/// One accepted step of a run over time, or the remeshing that followed it.
+struct StepSummary {
+    int number = 0;
+    double t = 0.0;
+    double step = 0.0;
+    int n_iterations = 0;
+    int n_cuts = 0;
+    double residual = 0.0;
+    double energy = 0.0;
+    double work = 0.0;
+    double min_det_F = 1.0;
+    Vector3 applied_force = Vector3::Zero();
+    std::map<std::string, Vector3> reactions;
+    std::optional<iga::RemeshingReport> remeshing;
+};
+
+/// A run over time.
+struct SteppingSummary {
+    bool finished = false;
+    /// Why it stopped before its end.
+    std::string reason;
+    /// Given up on the way: those of the accepted steps, and those tried last.
+    int n_cuts = 0;
+    std::vector<StepSummary> history;
+
+    [[nodiscard]] int n_steps() const;
+    [[nodiscard]] int n_iterations() const;
+    [[nodiscard]] int n_remeshings() const;
 };
 
 /// What a run is summed up to; see `schema.md`.
@@ -54,10 +87,14 @@ struct Summary {
     std::vector<Phase> phases;
     iga::SolveReport solver;
     std::vector<CaseSummary> cases;
+    /// Of hyperelastic decks.
+    std::optional<SteppingSummary> stepping;
     std::vector<ProbeResult> probes;
     std::vector<std::string> warnings;
     std::vector<std::string> files;
 
+    /// The run reached its end.
+    [[nodiscard]] bool finished() const { return !stepping || stepping->finished; }
     /// True if all expectations are met.
     [[nodiscard]] bool passed() const;
 };

@@ -11,17 +11,77 @@ using Json = nlohmann::ordered_json;
 
 Json to_json_list(const Vector3& v) { return Json::array({v[0], v[1], v[2]}); }
 
-Json to_json_object(const CaseSummary& load_case) {
-    Json reactions = Json::object();
-    for (const auto& [set, force] : load_case.reactions) {
-        reactions[set] = to_json_list(force);
+Json to_json_object(const std::map<std::string, Vector3>& forces) {
+    Json object = Json::object();
+    for (const auto& [set, force] : forces) {
+        object[set] = to_json_list(force);
     }
+    return object;
+}
+
+Json to_json_object(const CaseSummary& load_case) {
     return {{"name", case_title(load_case.name)},
             {"energy", load_case.energy},
             {"applied_force", to_json_list(load_case.applied_force)},
             {"foundation_force", to_json_list(load_case.foundation_force)},
-            {"reactions", reactions},
+            {"reactions", to_json_object(load_case.reactions)},
             {"balance", load_case.balance}};
+}
+
+Json to_json_object(const iga::RemeshingReport& report) {
+    const auto pair = [](double before, double after) {
+        return Json{{"before", before}, {"after", after}};
+    };
+    return {{"cause", report.cause},
+            {"energy",
+             {{"before", report.energy_before},
+              {"transferred", report.energy_transferred},
+              {"after", report.energy_after}}},
+            {"volume", pair(report.volume_before, report.volume_after)},
+            {"reactions_before", to_json_object(report.reactions_before)},
+            {"reactions_after", to_json_object(report.reactions_after)},
+            {"shape_ratio", pair(report.shape_ratio_before, report.shape_ratio_after)},
+            {"scaled_jacobian", pair(report.scaled_jacobian_before, report.scaled_jacobian_after)},
+            {"angle_deviation", pair(report.angle_deviation_before, report.angle_deviation_after)},
+            {"gradient_drift", report.gradient_drift},
+            {"min_det_F", report.min_det_F},
+            {"largest_gap", report.largest_gap},
+            {"iterations", report.n_iterations}};
+}
+
+Json to_json_object(const StepSummary& step) {
+    Json object = {{"number", step.number},
+                   {"t", step.t},
+                   {"step", step.step},
+                   {"iterations", step.n_iterations},
+                   {"cuts", step.n_cuts},
+                   {"residual", step.residual},
+                   {"energy", step.energy},
+                   {"work", step.work},
+                   {"min_det_F", step.min_det_F},
+                   {"applied_force", to_json_list(step.applied_force)},
+                   {"reactions", to_json_object(step.reactions)}};
+    if (step.remeshing) {
+        object["remeshing"] = to_json_object(*step.remeshing);
+    }
+    return object;
+}
+
+/// Adds the keys of a run over time.
+void add_stepping(Json& object, const SteppingSummary& stepping) {
+    object["finished"] = stepping.finished;
+    if (!stepping.finished) {
+        object["reason"] = stepping.reason;
+    }
+    object["steps"] = stepping.n_steps();
+    object["cuts"] = stepping.n_cuts;
+    object["newton_iterations"] = stepping.n_iterations();
+    object["remeshings"] = stepping.n_remeshings();
+    Json history = Json::array();
+    for (const StepSummary& step : stepping.history) {
+        history.push_back(to_json_object(step));
+    }
+    object["history"] = history;
 }
 
 Json to_json_object(const ProbeResult& probe) {
@@ -29,6 +89,9 @@ Json to_json_object(const ProbeResult& probe) {
                    {"quantity", probe.quantity},
                    {"case", case_title(probe.load_case)},
                    {"value", probe.value}};
+    if (probe.t) {
+        object["t"] = *probe.t;
+    }
     if (probe.expected) {
         object["expected"] = *probe.expected;
         object["allowed_error"] = probe.allowed_error;
@@ -54,7 +117,9 @@ std::string to_json(const Summary& summary) {
         probes.push_back(to_json_object(probe));
     }
     Json object = {{"program", "couture " COUTURE_VERSION},
-                   {"status", summary.passed() ? "done" : "expectation_not_met"},
+                   {"status", !summary.finished() ? "not_finished"
+                              : summary.passed()  ? "done"
+                                                  : "expectation_not_met"},
                    {"deck", summary.deck},
                    {"deck_hash", summary.deck_hash},
                    {"title", summary.title},
@@ -86,6 +151,9 @@ std::string to_json(const Summary& summary) {
                    {"probes", probes},
                    {"warnings", summary.warnings},
                    {"files", summary.files}};
+    if (summary.stepping) {
+        add_stepping(object, *summary.stepping);
+    }
     return object.dump(2) + "\n";
 }
 

@@ -38,7 +38,59 @@ std::string probe_lines(const std::vector<ProbeResult>& probes) {
     return text;
 }
 
+std::string remeshing_lines(const StepSummary& step) {
+    const iga::RemeshingReport& report = *step.remeshing;
+    std::string text = fmt::format("    meshed again at t = {:.6g} ({}), {} iterations\n", step.t,
+                                   report.cause, report.n_iterations);
+    const auto line = [&](const char* name, double before, double after) {
+        text +=
+            fmt::format("      {:<22} before {:>13.6g}  after {:>13.6g}\n", name, before, after);
+    };
+    line("energy", report.energy_before, report.energy_after);
+    line("volume", report.volume_before, report.volume_after);
+    line("worst shape ratio", report.shape_ratio_before, report.shape_ratio_after);
+    line("worst scaled Jacobian", report.scaled_jacobian_before, report.scaled_jacobian_after);
+    line("worst angle deviation", report.angle_deviation_before, report.angle_deviation_after);
+    return text;
+}
+
+std::string stepping_lines(const SteppingSummary& stepping) {
+    std::string text = fmt::format("  steps {}, cuts {}, Newton iterations {}, remeshings {}\n",
+                                   stepping.n_steps(), stepping.n_cuts, stepping.n_iterations(),
+                                   stepping.n_remeshings());
+    for (const StepSummary& step : stepping.history) {
+        if (step.remeshing) {
+            text += remeshing_lines(step);
+        }
+    }
+    if (!stepping.history.empty()) {
+        const StepSummary& last = stepping.history.back();
+        text += fmt::format("  at t = {:.6g}: energy {:.6g}, work {:.6g}, det F >= {:.4g}\n",
+                            last.t, last.energy, last.work, last.min_det_F);
+    }
+    if (!stepping.finished) {
+        text += fmt::format("  NOT FINISHED: {}\n", stepping.reason);
+    }
+    return text;
+}
+
 }  // namespace
+
+int SteppingSummary::n_steps() const { return static_cast<int>(history.size()) - n_remeshings(); }
+
+int SteppingSummary::n_iterations() const {
+    int n = 0;
+    for (const StepSummary& step : history) {
+        n += step.n_iterations;
+    }
+    return n;
+}
+
+int SteppingSummary::n_remeshings() const {
+    return static_cast<int>(
+        std::count_if(history.begin(), history.end(),
+                      [](const StepSummary& step) { return step.remeshing.has_value(); }));
+}
 
 bool Summary::passed() const {
     return std::all_of(probes.begin(), probes.end(),
@@ -61,6 +113,9 @@ std::string to_table(const Summary& summary) {
                         summary.solver.iterations, summary.solver.residual);
     if (!summary.solver.note.empty()) {
         text += fmt::format("    {}\n", summary.solver.note);
+    }
+    if (summary.stepping) {
+        text += stepping_lines(*summary.stepping);
     }
     for (const CaseSummary& load_case : summary.cases) {
         text += fmt::format("  case '{}': energy {:.6g}, applied force {}, balance {:.1e}\n",

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "iga/core/error.h"
 
@@ -78,6 +79,23 @@ void write_atomically(const fs::path& path,
         const std::string reason = code.message();
         fs::remove(temporary, code);
         throw FileError("{}: can't be written: {}", path.string(), reason);
+    }
+}
+
+void remove_leftovers(const fs::path& folder, const std::string& stem) {
+    std::error_code code;
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder, code)) {
+        // ".name.PID.extension", as made above.
+        const std::string name = entry.path().stem().string();
+        const std::size_t dot = name.rfind('.');
+        if (name.starts_with("." + stem) && dot > 0 && dot + 1 < name.size() &&
+            name.find_first_not_of("0123456789", dot + 1) == std::string::npos) {
+            found.push_back(entry.path());
+        }
+    }
+    for (const fs::path& path : found) {
+        fs::remove(path, code);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace couture::io {
@@ -12,6 +13,10 @@ namespace couture::io {
 /// @throws FileError  naming the path and the system's reason; the temporary file is removed
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Removes what killed programs left of writes into `folder` whose files' names begin with `stem`.
+/// None of these writes may be under way.
+void remove_leftovers(const std::filesystem::path& folder, const std::string& stem);
 
 /// Says before a long run what would stop its results: makes nothing.
 ///

@@ -19,6 +19,10 @@ double Probe::allowed_error() const {
     return std::max(tolerance * std::abs(expect.value_or(0.0)), absolute_tolerance);
 }
 
+bool Deck::is_hyperelastic() const {
+    return !problem.materials.empty() && problem.materials.front().hyperelastic.has_value();
+}
+
 bool Probe::passes(double value) const {
     return !expect || std::abs(value - *expect) <= allowed_error();
 }
@@ -78,9 +82,6 @@ void for_each_named(Section& parent, const std::string& name,
     }
 }
 
-namespace {
-
-/// Calls `read` for [name] if it is there.
 void for_section(Section& top, const std::string& name, const std::function<void(Section&)>& read) {
     const TomlNode* table = top.find(name);
     if (table == nullptr) {
@@ -95,6 +96,8 @@ void for_section(Section& top, const std::string& name, const std::function<void
     read(section);
     section.finish();
 }
+
+namespace {
 
 void read_units(Section& section, UnitSystem& units) {
     if (const auto name = section.text("system")) {
@@ -155,7 +158,8 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
     }
 }
 
-void read_discretization(Section& section, Discretization& discretization) {
+void read_discretization(Section& section, Deck& deck) {
+    Discretization& discretization = deck.discretization;
     discretization.source = section.place().source;
     constexpr int max_degree = 8;
     constexpr int max_points = 20;
@@ -169,6 +173,12 @@ void read_discretization(Section& section, Discretization& discretization) {
     discretization.interpolates_geometry =
         section.choice("geometry", {"exact", "interpolated"}) == "interpolated";
     discretization.n_gauss_points = section.integer("gauss_points", 1, max_points);
+    const std::string volumetric =
+        section.choice("volumetric", {"automatic", "full", "projected"}).value_or("automatic");
+    deck.stepping.volumetric = volumetric == "full"        ? iga::Volumetric::full
+                               : volumetric == "projected" ? iga::Volumetric::projected
+                                                           : iga::Volumetric::automatic;
+    section.context().is_integrated_in_full = volumetric == "full";
 }
 
 void read_solver(Section& section, iga::SolverOptions& solver) {
@@ -202,7 +212,14 @@ void read_output(Section& section, Deck& deck) {
     }
     output.png_quantity = section.choice("png_quantity", names).value_or(output.png_quantity);
     output.png_scale = section.number("png_scale", dimensions::none, not_negative);
-    read_probes(section, deck.problem, deck.probes);
+    constexpr int max_steps = 1'000'000;
+    output.every = section.integer("every", 1, max_steps).value_or(output.every);
+    if (section.has("every") && !deck.is_hyperelastic()) {
+        section.mistake("every",
+                        "'every' of [output] counts the steps of hyperelastic runs; the materials "
+                        "of this deck are linear");
+    }
+    read_probes(section, deck, deck.probes);
 }
 
 }  // namespace
@@ -235,12 +252,20 @@ Deck parse_deck(const std::string& text, const fs::path& path,
         });
     }
     for_section(top, "discretization",
-                [&](Section& section) { read_discretization(section, deck.discretization); });
+                [&](Section& section) { read_discretization(section, deck); });
     read_problem(top, deck.problem);
     for_section(top, "solver", [&](Section& section) { read_solver(section, deck.solver); });
+    read_stepping(top, deck);
     for_section(top, "output", [&](Section& section) { read_output(section, deck); });
     top.finish();
     context.mistakes.throw_if_any();
+    if (deck.is_hyperelastic() && !deck.output.png_scale) {
+        deck.output.png_scale = 1.0;
+    }
+    deck.stepping.newton.solver = deck.solver;
+    deck.stepping.n_gauss_points = deck.discretization.n_gauss_points;
+    deck.stops = stops_of(deck, context);
+    deck.model_text = model_text_of(document, deck, context);
     return deck;
 }
 

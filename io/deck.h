@@ -8,6 +8,7 @@
 
 #include "iga/linalg/sparse_solver.h"
 #include "iga/mechanics/problem.h"
+#include "iga/solve/load_stepping.h"
 #include "io/units.h"
 
 namespace couture::io {
@@ -36,6 +37,19 @@ struct Discretization {
     std::string source;
 };
 
+/// When a body at finite strain is meshed again.
+struct RemeshingOptions {
+    std::string source;
+    /// Increasing.
+    std::vector<double> times;
+    /// Of the worst place of the deformed body, beyond which it is meshed again.
+    std::optional<double> shape_ratio;
+    std::optional<double> scaled_jacobian;
+    std::optional<double> angle_deviation;
+    bool on_failure = false;
+    int max_remeshings = 20;
+};
+
 /// A number to be reported, and checked if a value is expected.
 struct Probe {
     std::string source;
@@ -48,6 +62,8 @@ struct Probe {
     std::string on;
     /// Empty: the only case.
     std::string load_case;
+    /// When, in a run over time; nothing: at its end.
+    std::optional<double> t;
     std::optional<double> expect;
     /// The larger of tolerance |expect| and `absolute_tolerance` is allowed.
     double tolerance = 1e-3;
@@ -64,6 +80,8 @@ struct OutputOptions {
     /// Linear cells instead of exact spline cells.
     bool linear = false;
     bool gauss_points = false;
+    /// Runs over time: fields of each so many steps.
+    int every = 1;
     bool png = false;
     /// What a picture is coloured by.
     std::string png_quantity = "von_mises";
@@ -82,8 +100,19 @@ struct Deck {
     Discretization discretization;
     iga::Problem problem;
     iga::SolverOptions solver;
+    /// Of hyperelastic decks.
+    iga::SteppingOptions stepping;
+    /// Times that steps end at: those of tables, probes and remeshings within the run, increasing.
+    std::vector<double> stops;
+    std::optional<RemeshingOptions> remeshing;
     OutputOptions output;
     std::vector<Probe> probes;
+    /// What the states of a run depend on: all of the deck but its title and [stepping], [solver],
+    /// [remeshing], [output], with the overrides; and the end of the run if loads grow until then.
+    std::string model_text;
+
+    /// The materials are hyperelastic: all are, or none.
+    [[nodiscard]] bool is_hyperelastic() const;
 };
 
 /// Reads and checks a deck by itself (the geometry is not opened). Implausible values warn.

@@ -30,9 +30,13 @@ void read_displacement(Section& section, iga::Problem& problem) {
                                         section.title()));
         return;
     }
+    iga::CaseEntry time;
+    read_time(section, time);
     for (const std::string& on : sets) {
         iga::Support support = make_support(section, on);
         support.load_case = load_case;
+        support.follows_time = time.follows_time;
+        support.amplitude = time.amplitude;
         support.normal = normal;
         if (has_component) {
             support.components = components;
@@ -77,6 +81,11 @@ void read_foundation(Section& section, iga::Problem& problem) {
         !section.has("z")) {
         section.mistake("", fmt::format("{} needs 'normal', 'value' or some of 'x', 'y', 'z' "
                                         "(stiffness per area)",
+                                        section.title()));
+    }
+    if (section.names_time() && section.context().is_hyperelastic) {
+        section.mistake("", fmt::format("{} depends on the time t; springs do not change, leave t "
+                                        "out",
                                         section.title()));
     }
     for (const std::string& on : section.sets()) {

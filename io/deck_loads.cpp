@@ -38,6 +38,7 @@ void read_point_load(Section& section, iga::Problem& problem) {
     load.on = section.text("on").value_or("");
     section.require("force", "a list of components");
     load.force = section.vector("force", dimensions::force).value_or(Vector3::Zero());
+    read_time(section, load);
     section.refuse_third("force", load.force[2] != 0.0);
     section.refuse_third("at", load.at && (*load.at)[2] != 0.0);
     if (section.has("at") == section.has("on")) {
@@ -60,6 +61,7 @@ void read_resultant(Section& section, iga::Problem& problem) {
         "control_points") {
         load.spread = iga::Spread::control_points;
     }
+    read_time(section, load);
     problem.resultants.push_back(std::move(load));
 }
 
@@ -92,6 +94,14 @@ void read_loads(Section& top, iga::Problem& problem) {
     for_each_entry(top, "pressure", [&](Section& section) {
         auto pressure = make_load<iga::Pressure>(section);
         pressure.value = read_value(section, dimensions::pressure);
+        read_time(section, pressure);
+        pressure.follows_body = section.flag("follows_body").value_or(true);
+        if (section.has("follows_body") && !section.context().is_hyperelastic) {
+            section.mistake(
+                "follows_body",
+                "'follows_body' of [[pressure]] needs hyperelastic materials; in linear "
+                "analyses loads act on the undeformed body");
+        }
         for (const std::string& on : section.sets()) {
             pressure.on = on;
             problem.pressures.push_back(pressure);
@@ -100,6 +110,7 @@ void read_loads(Section& top, iga::Problem& problem) {
     for_each_entry(top, "traction", [&](Section& section) {
         auto traction = make_load<iga::Traction>(section);
         traction.components = read_components(section, dimensions::pressure);
+        read_time(section, traction);
         for (const std::string& on : section.sets()) {
             traction.on = on;
             problem.tractions.push_back(traction);
@@ -109,6 +120,7 @@ void read_loads(Section& top, iga::Problem& problem) {
         auto force = make_load<iga::BodyForce>(section);
         force.patches = section.patches();
         force.components = read_components(section, dimensions::force_per_volume);
+        read_time(section, force);
         problem.body_forces.push_back(std::move(force));
     });
     for_each_entry(top, "point_load", [&](Section& section) { read_point_load(section, problem); });

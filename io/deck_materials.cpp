@@ -32,8 +32,10 @@ constexpr double nearly_incompressible = 0.495;
 /// Beyond this nothing solid expands, 1/K.
 constexpr double large_expansion = 1e-3;
 
-void warn_implausible_modulus(const std::string& name, double modulus, const TomlPlace& place,
-                              const UnitSystem& units) {
+}  // namespace
+
+void warn_implausible_modulus(const std::string& name, const std::string& what, double modulus,
+                              const TomlPlace& place, const UnitSystem& units) {
     std::string lower = name;
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -45,13 +47,15 @@ void warn_implausible_modulus(const std::string& name, double modulus, const Tom
     }
     const double pascal = modulus * units.scale(dimensions::pressure);
     if (pascal < range.low || pascal > range.high) {
-        log::warn(fmt::format(
-            "{}: youngs_modulus = {:g} in units '{}' is {:g} GPa, which is implausible for "
-            "'{}' (expected {:g} to {:g} GPa); is the unit right?",
-            place.source, modulus, units.name(), pascal * 1e-9, name, range.low * 1e-9,
-            range.high * 1e-9));
+        log::warn(
+            fmt::format("{}: {} = {:g} in units '{}' is {:g} GPa, which is implausible for "
+                        "'{}' (expected {:g} to {:g} GPa); is the unit right?",
+                        place.source, what, modulus, units.name(), pascal * 1e-9, name,
+                        range.low * 1e-9, range.high * 1e-9));
     }
 }
+
+namespace {
 
 void read_isotropic(Section& section, iga::Material& material) {
     section.require("youngs_modulus", "a pressure > 0");
@@ -63,8 +67,8 @@ void read_isotropic(Section& section, iga::Material& material) {
         return;
     }
     material.stiffness = iga::isotropic_stiffness(*E, *nu);
-    warn_implausible_modulus(material.name, *E, section.find("youngs_modulus")->place,
-                             section.context().units);
+    warn_implausible_modulus(material.name, "youngs_modulus", *E,
+                             section.find("youngs_modulus")->place, section.context().units);
     if (*nu < 0.0 || *nu > nearly_incompressible) {
         log::warn(fmt::format("{}: poissons_ratio = {:g} of '{}' is {}",
                               section.find("poissons_ratio")->place.source, *nu, material.name,
@@ -109,6 +113,46 @@ void read_expansion(Section& section, iga::Material& material) {
     }
 }
 
+const std::vector<std::string> models = {"linear_elastic", "orthotropic", "neo_hookean",
+                                         "neo_hookean_logarithmic", "saint_venant_kirchhoff"};
+
+void read_elastic(Section& section, iga::Material& material) {
+    const std::string model = section.choice("model", models).value_or("linear_elastic");
+    if (model == "linear_elastic") {
+        read_isotropic(section, material);
+    } else if (model == "orthotropic") {
+        read_orthotropic(section, material);
+    } else {
+        read_hyperelastic(section,
+                          model == "neo_hookean" ? iga::StoredEnergy::neo_hookean
+                          : model == "saint_venant_kirchhoff"
+                              ? iga::StoredEnergy::saint_venant_kirchhoff
+                              : iga::StoredEnergy::neo_hookean_logarithmic,
+                          material);
+        return;
+    }
+    read_expansion(section, material);
+}
+
+/// All materials are hyperelastic or none.
+void check_mixture(Section& top, const iga::Problem& problem) {
+    const auto is_hyperelastic = [](const iga::Material& material) {
+        return material.hyperelastic.has_value();
+    };
+    const auto first =
+        std::find_if(problem.materials.begin(), problem.materials.end(), is_hyperelastic);
+    const auto linear =
+        std::find_if_not(problem.materials.begin(), problem.materials.end(), is_hyperelastic);
+    if (first == problem.materials.end() || linear == problem.materials.end()) {
+        return;
+    }
+    top.context().mistakes.add(
+        top.find("material")->find(linear->name)->place,
+        fmt::format("[material.{}] is linear, [material.{}] hyperelastic; give all materials of a "
+                    "deck a hyperelastic 'model', or none",
+                    linear->name, first->name));
+}
+
 }  // namespace
 
 void read_materials(Section& top, iga::Problem& problem) {
@@ -118,14 +162,7 @@ void read_materials(Section& top, iga::Problem& problem) {
         material.name = name;
         material.patches = section.patches();
         if (is_elasticity) {
-            const std::string model = section.choice("model", {"linear_elastic", "orthotropic"})
-                                          .value_or("linear_elastic");
-            if (model == "orthotropic") {
-                read_orthotropic(section, material);
-            } else {
-                read_isotropic(section, material);
-            }
-            read_expansion(section, material);
+            read_elastic(section, material);
         } else {
             section.require("conductivity", "a number > 0");
             material.conductivity =
@@ -133,6 +170,9 @@ void read_materials(Section& top, iga::Problem& problem) {
         }
         problem.materials.push_back(std::move(material));
     });
+    check_mixture(top, problem);
+    top.context().is_hyperelastic =
+        !problem.materials.empty() && problem.materials.front().hyperelastic.has_value();
     if (problem.materials.empty() && top.find("material") == nullptr) {
         top.mistake("", fmt::format("the deck needs a material: a section [material.NAME] with {}",
                                     is_elasticity ? "'youngs_modulus' and 'poissons_ratio'"

@@ -56,7 +56,8 @@ void read_expectation(Section& section, const QuantityInfo& info, Probe& probe) 
 
 }  // namespace
 
-void read_probes(Section& output, const iga::Problem& problem, std::vector<Probe>& probes) {
+void read_probes(Section& output, const Deck& deck, std::vector<Probe>& probes) {
+    const iga::Problem& problem = deck.problem;
     const bool is_elasticity = problem.physics == iga::Physics::elasticity;
     std::vector<std::string> names;
     for (const QuantityInfo& info : quantities(is_elasticity)) {
@@ -82,6 +83,16 @@ void read_probes(Section& output, const iga::Problem& problem, std::vector<Probe
             for (const char* key : {"at", "patch", "xi", "on"}) {
                 static_cast<void>(section.find(key));
             }
+        }
+        probe.t = section.number("t", dimensions::time, positive);
+        if (section.has("t") && !deck.is_hyperelastic()) {
+            section.mistake("t",
+                            "'t' of [[output.probe]] is a time of a hyperelastic run; the "
+                            "materials of this deck are linear");
+        } else if (probe.t.value_or(0.0) > deck.stepping.end) {
+            section.mistake("t", fmt::format("'t' of [[output.probe]] = {:g} is after the end of "
+                                             "the run, {:g}",
+                                             *probe.t, deck.stepping.end));
         }
         if (cases.size() > 1) {
             probe.load_case = section.choice("case", cases).value_or("");

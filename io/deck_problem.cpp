@@ -61,6 +61,28 @@ void read_combinations(Section& top, iga::Problem& problem) {
     });
 }
 
+/// What hyperelastic bodies do not have.
+void refuse_linear_only(Section& top, const iga::Problem& problem) {
+    if (!top.context().is_hyperelastic) {
+        return;
+    }
+    if (problem.kinematics == iga::Kinematics::plane_stress) {
+        top.context().mistakes.add(
+            top.find("analysis")->find("kinematics")->place,
+            "kinematics 'plane_stress' is for linear materials only; with hyperelastic ones take "
+            "'plane_strain', 'axisymmetric' or a volume");
+    }
+    if (top.has("combination")) {
+        top.mistake("combination",
+                    "[combination.NAME] adds load cases, which hyperelastic bodies do not have; "
+                    "leave it out");
+    }
+    if (top.has("temperature")) {
+        top.mistake("temperature",
+                    "[[temperature]]: hyperelastic materials have no thermal strain; leave it out");
+    }
+}
+
 }  // namespace
 
 void read_problem(Section& top, iga::Problem& problem) {
@@ -75,10 +97,15 @@ void read_problem(Section& top, iga::Problem& problem) {
         }
     }
     read_materials(top, problem);
+    read_amplitudes(top);
     read_conditions(top, problem);
     read_loads(top, problem);
     read_combinations(top, problem);
+    refuse_linear_only(top, problem);
     for (const auto& [place, name] : top.context().uses_of_time) {
+        if (top.context().is_hyperelastic) {
+            break;
+        }
         top.context().mistakes.add(
             place,
             fmt::format("{} depends on the time t, which linear analyses do not have; write a "

@@ -182,6 +182,12 @@ std::vector<int> Section::patches() {
 
 std::string Section::load_case() {
     const std::string name = text("case").value_or("");
+    if (context_->is_hyperelastic && has("case")) {
+        mistake("case", fmt::format("'case' of {}: hyperelastic bodies are loaded along one path "
+                                    "in time, without load cases; give the load an 'amplitude'",
+                                    title_));
+        return "";
+    }
     // Results are files named after their load case.
     const bool has_bad = std::any_of(name.begin(), name.end(), [](unsigned char c) {
         return c == '/' || c == '\\' || std::iscntrl(c) != 0;
@@ -288,6 +294,19 @@ std::vector<double> Section::numbers(const std::string& key, const Dimension& di
     return result;
 }
 
+std::vector<double> Section::number_list(const std::string& key, const Dimension& dimension,
+                                     const Range& range) {
+    const TomlNode* node = find(key);
+    if (node == nullptr) {
+        return {};
+    }
+    if (node->kind != TomlNode::Kind::array || node->items.empty()) {
+        wrong_kind(*node, key, "a list of numbers");
+        return {};
+    }
+    return numbers(key, dimension, {static_cast<int>(node->items.size())}, range);
+}
+
 std::optional<Function> Section::to_function(const TomlNode& node, const std::string& key,
                                              const Dimension& dimension) {
     if (node.kind == TomlNode::Kind::text && !looks_like_quantity(node.text)) {
@@ -296,6 +315,7 @@ std::optional<Function> Section::to_function(const TomlNode& node, const std::st
             const std::vector<std::string>& names = expression.variables();
             if (!names.empty()) {
                 if (std::find(names.begin(), names.end(), "t") != names.end()) {
+                    names_time_ = true;
                     context_->uses_of_time.emplace_back(node.place, name_of(key));
                 }
                 // What goes wrong at some point later still names the place in the deck.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "iga/core/function.h"
+#include "iga/mechanics/problem.h"
 #include "io/toml_node.h"
 #include "io/units.h"
 
@@ -44,6 +45,14 @@ struct DeckContext {
     UnitSystem units;
     /// Displacements have no z.
     bool is_plane = false;
+    /// The materials are: loads follow time.
+    bool is_hyperelastic = false;
+    std::vector<iga::Amplitude> amplitudes;
+    std::set<std::string> used_amplitudes;
+    /// [discretization] says volumetric = "full".
+    bool is_integrated_in_full = false;
+    /// Some load grows linearly until the end.
+    bool has_ramp = false;
     /// Values that name t: where, and what they are.
     std::vector<std::pair<TomlPlace, std::string>> uses_of_time;
 };
@@ -90,6 +99,9 @@ class Section {
     [[nodiscard]] std::vector<double> numbers(const std::string& key, const Dimension& dimension,
                                               const std::vector<int>& sizes,
                                               const Range& range = any_number);
+    /// The same, of any length but 0.
+    [[nodiscard]] std::vector<double> number_list(const std::string& key, const Dimension& dimension,
+                                              const Range& range = any_number);
     /// A number, a text with a unit or an expression of x, y, z, t.
     [[nodiscard]] std::optional<Function> function(const std::string& key,
                                                    const Dimension& dimension);
@@ -98,6 +110,9 @@ class Section {
                                                                     const Dimension& dimension);
     /// Three numbers (two: the third is 0).
     [[nodiscard]] std::optional<Vector3> vector(const std::string& key, const Dimension& dimension);
+
+    /// An expression read so far names t.
+    [[nodiscard]] bool names_time() const { return names_time_; }
 
     /// Notes a mistake if the body is plane and `key` says something of z.
     void refuse_third(const std::string& key, bool is_given);
@@ -120,6 +135,7 @@ class Section {
     std::string title_;
     DeckContext* context_;
     std::set<std::string> known_;
+    bool names_time_ = false;
 };
 
 }  // namespace couture::io

@@ -383,7 +383,8 @@ void write_vtu(const std::filesystem::path& path, const Space<d>& space,
 }
 
 void write_points_vtu(const std::filesystem::path& path, const MatrixX& positions,
-                      std::span<const PointArray> arrays, const std::string& provenance) {
+                      std::span<const PointArray> arrays, const std::string& provenance,
+                      std::span<const std::vector<int>> cells) {
     if (positions.cols() != 2 && positions.cols() != 3) {
         throw InputError("write_points_vtu: points have {} coordinates; 2 or 3 are taken",
                          positions.cols());
@@ -397,12 +398,19 @@ void write_points_vtu(const std::filesystem::path& path, const MatrixX& position
     vtkDoubleArray& x = *vtkDoubleArray::SafeDownCast(points->GetData());
     x.Fill(0.0);
     set_rows(x, 0, positions);
-    vtkNew<vtkCellArray> vertices;
-    for (vtkIdType i = 0; i < positions.rows(); ++i) {
-        vertices->InsertNextCell(1, &i);
+    vtkNew<vtkCellArray> list;
+    for (vtkIdType i = 0; i < positions.rows() && cells.empty(); ++i) {
+        list->InsertNextCell(1, &i);
+    }
+    for (const std::vector<int>& cell : cells) {
+        const std::vector<vtkIdType> ids(cell.begin(), cell.end());
+        list->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
     }
     mesh->SetPoints(points);
-    mesh->SetCells(VTK_VERTEX, vertices);
+    mesh->SetCells(cells.empty()               ? VTK_VERTEX
+                   : cells.front().size() == 4 ? VTK_QUAD
+                                               : VTK_HEXAHEDRON,
+                   list);
     for (const PointArray& array : arrays) {
         set_rows(add_array(*mesh->GetPointData(), array, positions.rows()), 0, array.coefficients);
     }

@@ -51,11 +51,15 @@ void write_vtu(const std::filesystem::path& path, const iga::Space<d>& space,
                std::span<const PointArray> points, std::span<const CellArray> cells = {},
                const VtuOptions& options = {});
 
-/// Writes values at single points (Gauss points, probes) as a mesh of vertices.
+/// Writes values at single points (Gauss points, probes) as a mesh of vertices, or of the linear
+/// cells that join them.
 ///
 /// @param positions  n_points x 2 or 3
+/// @param cells  point numbers of quads (4 each) or hexahedra (8 each) in VTK's order; empty:
+///               vertices
 /// @throws InputError, FileError  as `write_vtu`
 void write_points_vtu(const std::filesystem::path& path, const MatrixX& positions,
-                      std::span<const PointArray> arrays, const std::string& provenance = {});
+                      std::span<const PointArray> arrays, const std::string& provenance = {},
+                      std::span<const std::vector<int>> cells = {});
 
 }  // namespace couture::io

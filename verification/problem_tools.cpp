@@ -4,7 +4,7 @@
 
 #include "iga/core/error.h"
 #include "iga/core/format.h"
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 #include "iga/post/stress.h"
 #include "iga/spline/refine.h"
 #include "meshing/parts/parts.h"

@@ -6,6 +6,7 @@
 #include "drivers/deck_check.h"
 #include "drivers/job_geometry.h"
 #include "drivers/probes.h"
+#include "drivers/remesher.h"
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
@@ -18,7 +19,10 @@ namespace {
 /// What a run does before it assembles: expressions are asked for wherever it needs them.
 template <int d>
 void check_problem(const io::Deck& deck, const iga::Space<d>& space) {
-    const iga::Problem& problem = deck.problem;
+    // Loads over time are asked for at the end.
+    const double end = deck.stepping.end;
+    const iga::Problem problem =
+        deck.is_hyperelastic() ? iga::at_time(deck.problem, end, end) : deck.problem;
     const std::optional<int> n_points = deck.discretization.n_gauss_points;
     try {
         iga::require_held<d>(space, problem,
@@ -39,6 +43,7 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
              const CommonOptions& common) {
     check_deck<d>(deck, geometry);
     static_cast<void>(locate_probes<d>(deck, geometry));
+    static_cast<void>(make_remeshing<d>(deck, geometry));
     const auto space = make_space<d>(deck, geometry);
     check_problem<d>(deck, *space);
     const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;

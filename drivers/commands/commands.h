@@ -26,6 +26,8 @@ struct SolveOptions {
     std::filesystem::path out;
     bool linear = false;
     bool png = false;
+    /// Goes on from the newest state of a hyperelastic run.
+    bool resume = false;
 };
 
 struct CompareOptions {

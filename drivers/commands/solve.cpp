@@ -4,6 +4,7 @@
 #include "drivers/deck_check.h"
 #include "drivers/job_geometry.h"
 #include "drivers/linear_run.h"
+#include "drivers/stepped_run.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "io/atomic_file.h"
@@ -21,6 +22,12 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
             throw InputError("{}: no picture can be drawn: {}", deck.path.string(), *missing);
         }
     }
+    if (options.resume && !deck.is_hyperelastic()) {
+        throw InputError(
+            "{}: --resume goes on from the states of a hyperelastic run; the materials of this "
+            "deck are linear, leave it out",
+            deck.path.string());
+    }
     const std::string name = deck.path.stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
@@ -30,8 +37,11 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
     Summary summary = std::visit(
         [&]<int d>(const iga::MultiPatch<d>& multipatch) {
             const GeometryCertificate certificate = check_deck<d>(deck, multipatch);
-            return run_linear<d>(deck, multipatch, certificate, folder,
-                                 {{"geometry", timer.seconds(), peak_memory()}});
+            const std::vector<Phase> phases = {{"geometry", timer.seconds(), peak_memory()}};
+            return deck.is_hyperelastic()
+                       ? run_stepped<d>(deck, multipatch, certificate, folder, options.resume,
+                                        phases)
+                       : run_linear<d>(deck, multipatch, certificate, folder, phases);
         },
         geometry);
     const std::filesystem::path json_file = folder / (name + ".json");
@@ -43,6 +53,14 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
         log::info(to_table(summary));
     } else if (!common.quiet) {
         fmt::print("{}", to_table(summary));
+    }
+    if (!summary.finished()) {
+        fmt::print(
+            stderr,
+            "couture: the run did not reach its end: {}; its steps are kept: change [stepping] "
+            "(a smaller smallest_step, more max_iterations) and go on with --resume\n",
+            summary.stepping->reason);
+        return ExitCode::run_failed;
     }
     if (!summary.passed()) {
         fmt::print(stderr, "couture: an expectation is not met\n");

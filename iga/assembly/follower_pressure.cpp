@@ -65,14 +65,6 @@ class DeformedArea {
     double d_measure_ = 0.0;
 };
 
-double largest(const SparseMatrix& matrix) {
-    double result = 0.0;
-    for (const double value : matrix.coeffs()) {
-        result = std::max(result, std::abs(value));
-    }
-    return result;
-}
-
 }  // namespace
 
 template <int d>
@@ -110,12 +102,9 @@ FollowerPressure assemble_follower_pressure(const Space<d>& space, const Problem
             });
         }
     }
-    SparseMatrix all(space.n_dofs() * d, space.n_dofs() * d);
-    all.setFromTriplets(entries.begin(), entries.end());
-    const SparseMatrix transposed = all.transpose();
-    result.stiffness = 0.5 * (all + transposed);
-    const SparseMatrix rest = 0.5 * (all - transposed);
-    result.asymmetry = rest.nonZeros() > 0 ? largest(rest) / std::max(largest(all), 1e-300) : 0.0;
+    result.stiffness.resize(static_cast<Eigen::Index>(space.n_dofs()) * d,
+                            static_cast<Eigen::Index>(space.n_dofs()) * d);
+    result.stiffness.setFromTriplets(entries.begin(), entries.end());
     return result;
 }
 

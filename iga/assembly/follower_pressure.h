@@ -9,11 +9,9 @@ namespace couture::iga {
 struct FollowerPressure {
     /// n_dofs x d.
     MatrixX forces;
-    /// Minus the derivative of the forces by the unknowns n_components * dof + component, its
-    /// symmetric part: all of it where the pressure's rim is held or lies in planes of symmetry.
+    /// Minus the derivative of the forces by the unknowns d * dof + component. Symmetric between
+    /// free unknowns where the pressure's rim is held or lies in planes of symmetry.
     SparseMatrix stiffness;
-    /// Largest entry of the part left out, over the largest of all: 0 if the load has a potential.
-    double asymmetry = 0.0;
 };
 
 /// The pressures with `follows_body` at a displacement n_dofs x d: force -p n da on the deformed

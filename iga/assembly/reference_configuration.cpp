@@ -21,8 +21,7 @@ SpacePtr<d> ReferenceConfiguration<d>::undeformed() const {
         for (Eigen::Index i = 0; i < points.rows(); ++i) {
             points.row(i) -= displacement.row(space->dofs(p)[i]);
         }
-        body.patches[p] = patch.is_rational() ? Patch<d>(patch.space(), points, patch.weights())
-                                              : Patch<d>(patch.space(), points);
+        body.patches[p] = Patch<d>(patch.space(), points, patch.weights());
     }
     return std::make_shared<const Space<d>>(std::move(body));
 }

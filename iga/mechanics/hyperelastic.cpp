@@ -25,6 +25,24 @@ Matrix<3> finger_strain(const Matrix<3>& H) { return H + H.transpose() + H * H.t
 /// F^-T.
 Matrix<3> cofactor_over_determinant(const Matrix<3>& F) { return F.inverse().transpose(); }
 
+/// A fourth-order tensor from entry(i, J, k, L), at (3 i + J, 3 k + L).
+template <typename Entry>
+Matrix<9> fourth_order(const Entry& entry) {
+    Matrix<9> A;
+    for (int i = 0; i < 3; ++i) {
+        for (int J = 0; J < 3; ++J) {
+            for (int k = 0; k < 3; ++k) {
+                for (int L = 0; L < 3; ++L) {
+                    A(3 * i + J, 3 * k + L) = entry(i, J, k, L);
+                }
+            }
+        }
+    }
+    return A;
+}
+
+double equal(int a, int b) { return a == b ? 1.0 : 0.0; }
+
 }  // namespace
 
 Hyperelastic make_hyperelastic(StoredEnergy energy, double shear_modulus, double bulk_modulus) {
@@ -87,45 +105,29 @@ Matrix<9> piola_tangent(const Hyperelastic& material, const Matrix<3>& H) {
     const Matrix<3> F = Matrix<3>::Identity() + H;
     const double mu = material.shear_modulus;
     const double lambda = lame_lambda(material);
-    Matrix<9> A;
-    // Sum of products of one or two tensors; `entry` gives dP_iJ / dF_kL.
-    const auto fill = [&A](const auto& entry) {
-        for (int i = 0; i < 3; ++i) {
-            for (int J = 0; J < 3; ++J) {
-                for (int k = 0; k < 3; ++k) {
-                    for (int L = 0; L < 3; ++L) {
-                        A(3 * i + J, 3 * k + L) = entry(i, J, k, L);
-                    }
-                }
-            }
-        }
-    };
-    const auto equal = [](int a, int b) { return a == b ? 1.0 : 0.0; };
     if (material.energy == StoredEnergy::saint_venant_kirchhoff) {
         const Matrix<3> E = green_strain(H);
         const Matrix<3> S = lambda * E.trace() * Matrix<3>::Identity() + 2.0 * mu * E;
         const Matrix<3> b = F * F.transpose();
-        fill([&](int i, int J, int k, int L) {
+        return fourth_order([&](int i, int J, int k, int L) {
             return equal(i, k) * S(L, J) + lambda * F(i, J) * F(k, L) +
                    mu * (F(i, L) * F(k, J) + b(i, k) * equal(J, L));
         });
-        return A;
     }
     const double dJ = volume_change(H);
     const double log_J = std::log1p(dJ);
     const Matrix<3> G = cofactor_over_determinant(F);
     if (material.energy == StoredEnergy::neo_hookean_logarithmic) {
-        fill([&](int i, int J, int k, int L) {
+        return fourth_order([&](int i, int J, int k, int L) {
             return mu * equal(i, k) * equal(J, L) + lambda * G(i, J) * G(k, L) +
                    (mu - lambda * log_J) * G(i, L) * G(k, J);
         });
-        return A;
     }
     const double J_now = 1.0 + dJ;
     const double kappa = material.bulk_modulus;
     const double m = mu * std::exp(-2.0 / 3.0 * log_J);
     const double I1 = F.squaredNorm();
-    fill([&](int i, int J, int k, int L) {
+    return fourth_order([&](int i, int J, int k, int L) {
         const double GG = G(i, J) * G(k, L);
         const double crossed = G(i, L) * G(k, J);
         return m * (equal(i, k) * equal(J, L) -
@@ -133,7 +135,43 @@ Matrix<9> piola_tangent(const Hyperelastic& material, const Matrix<3>& H) {
                     I1 / 3.0 * crossed) +
                kappa * ((2.0 * J_now - 1.0) * J_now * GG - dJ * J_now * crossed);
     });
-    return A;
+}
+
+double dilatation_modulus(const Hyperelastic& material) {
+    return material.energy == StoredEnergy::neo_hookean ? material.bulk_modulus
+                                                        : lame_lambda(material);
+}
+
+Dilatation dilatation(const Hyperelastic& material, const Matrix<3>& H) {
+    const Matrix<3> F = Matrix<3>::Identity() + H;
+    if (material.energy == StoredEnergy::saint_venant_kirchhoff) {
+        return {green_strain(H).trace(), F};
+    }
+    const double dJ = volume_change(H);
+    const Matrix<3> G = cofactor_over_determinant(F);
+    if (material.energy == StoredEnergy::neo_hookean_logarithmic) {
+        return {std::log1p(dJ), G};
+    }
+    return {dJ, (1.0 + dJ) * G};
+}
+
+Matrix<9> dilatation_hessian(const Hyperelastic& material, const Matrix<3>& H) {
+    if (material.energy == StoredEnergy::saint_venant_kirchhoff) {
+        return Matrix<9>::Identity();
+    }
+    const double J = 1.0 + volume_change(H);
+    const Matrix<3> G = cofactor_over_determinant(Matrix<3>::Identity() + H);
+    if (material.energy == StoredEnergy::neo_hookean_logarithmic) {
+        return fourth_order([&](int i, int I, int k, int L) { return -G(i, L) * G(k, I); });
+    }
+    return fourth_order(
+        [&](int i, int I, int k, int L) { return J * (G(i, I) * G(k, L) - G(i, L) * G(k, I)); });
+}
+
+double poissons_ratio(const Hyperelastic& material) {
+    const double kappa = material.bulk_modulus;
+    const double mu = material.shear_modulus;
+    return (3.0 * kappa - 2.0 * mu) / (6.0 * kappa + 2.0 * mu);
 }
 
 Matrix<3> cauchy_stress(const Matrix<3>& piola, const Matrix<3>& H) {

@@ -42,6 +42,21 @@ struct Hyperelastic {
 /// dP_iJ / dF_kL at (3 i + J, 3 k + L); symmetric.
 [[nodiscard]] Matrix<9> piola_tangent(const Hyperelastic& material, const Matrix<3>& H);
 
+/// The volumetric part of a stored energy, modulus/2 measure(F)^2, for its projection: J - 1 with
+/// kappa; ln J (logarithmic) and tr E (Saint Venant-Kirchhoff) with lambda.
+struct Dilatation {
+    double value = 0.0;
+    /// Derivative by F.
+    Matrix<3> gradient = Matrix<3>::Zero();
+};
+[[nodiscard]] Dilatation dilatation(const Hyperelastic& material, const Matrix<3>& H);
+/// Second derivative by F, as `piola_tangent`.
+[[nodiscard]] Matrix<9> dilatation_hessian(const Hyperelastic& material, const Matrix<3>& H);
+[[nodiscard]] double dilatation_modulus(const Hyperelastic& material);
+
+/// Of the undeformed state.
+[[nodiscard]] double poissons_ratio(const Hyperelastic& material);
+
 /// Cauchy stress P F^T / J.
 [[nodiscard]] Matrix<3> cauchy_stress(const Matrix<3>& piola, const Matrix<3>& H);
 

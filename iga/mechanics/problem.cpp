@@ -4,6 +4,19 @@
 
 namespace couture::iga {
 
+double Amplitude::operator()(double t) const {
+    const auto next = std::upper_bound(times.begin(), times.end(), t);
+    if (next == times.begin()) {
+        return values.front();
+    }
+    if (next == times.end()) {
+        return values.back();
+    }
+    const auto i = next - times.begin();
+    const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
+    return (1.0 - share) * values[i - 1] + share * values[i];
+}
+
 std::vector<std::string> Problem::load_cases() const {
     std::vector<std::string> names;
     const auto add = [&names](const auto& entries) {
@@ -28,7 +41,12 @@ std::vector<std::string> Problem::load_cases() const {
 }
 
 Problem at_time(const Problem& problem, double t, double end) {
-    const auto share = [&](const CaseEntry& entry) { return entry.follows_time ? 1.0 : t / end; };
+    const auto share = [&](const CaseEntry& entry) {
+        if (entry.amplitude) {
+            return (*entry.amplitude)(t);
+        }
+        return entry.follows_time ? 1.0 : t / end;
+    };
     const auto freeze = [&](const CaseEntry& entry, Function& value) {
         if (value) {
             value = [value, t, factor = share(entry)](const Vector3& x, double) {

@@ -39,12 +39,25 @@ struct Entry {
     std::string source;
 };
 
+/// A factor over time, linear between the times of a table and constant beyond its ends.
+struct Amplitude {
+    std::string name;
+    /// Increasing, at least one.
+    std::vector<double> times;
+    /// As many.
+    std::vector<double> values;
+
+    [[nodiscard]] double operator()(double t) const;
+};
+
 /// What may belong to one load case.
 struct CaseEntry : Entry {
     /// Empty: acts in every case.
     std::string load_case;
     /// Its values name t. Else, in a run over time, they grow linearly from 0 to what they are.
     bool follows_time = false;
+    /// Multiplies the values instead of growing linearly.
+    std::optional<Amplitude> amplitude;
 };
 
 /// Prescribed displacement on a named set; for Poisson the value is component 0.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
-#include "iga/assembly/loads.h"
 #include "iga/core/error.h"
+#include "iga/core/format.h"
 #include "iga/core/log.h"
+#include "iga/solve/state_transfer.h"
 #include "iga/solve/static_system.h"
+#include "iga/topology/element_quality.h"
 
 namespace couture::iga {
 
@@ -14,6 +16,8 @@ namespace {
 /// Steps that took at most so many iterations are followed by larger ones.
 constexpr int quick_iterations = 5;
 constexpr double growth = 1.5;
+/// Times are equal up to the rounding of a sum of steps, relative to the end.
+constexpr double same_time = 1e-12;
 
 void check_options(const SteppingOptions& options) {
     const auto require = [](bool holds, const std::string& what) {
@@ -21,6 +25,8 @@ void check_options(const SteppingOptions& options) {
             throw InputError("load steps: {}", what);
         }
     };
+    require(options.control == Control::load || options.max_steps > 0,
+            "an arc-length run may never reach its end; give max_steps");
     require(options.end > 0.0, fmt::format("end = {:g}; must be positive", options.end));
     require(
         options.smallest_step > 0.0 && options.smallest_step <= options.first_step &&
@@ -45,6 +51,336 @@ void check_problem(const Problem& problem) {
     }
 }
 
+/// What one mesh of the deformed body is worth.
+struct MeshQuality {
+    double shape_ratio = 0.0;
+    double scaled_jacobian = 1.0;
+    double angle_deviation = 0.0;
+};
+
+template <int d>
+MeshQuality quality_of(const MultiPatch<d>& body) {
+    const QualitySummary<d> summary = element_quality(body);
+    return {summary.max_shape_ratio, summary.min_scaled_jacobian, summary.max_angle_deviation};
+}
+
+/// A run from one state to its end.
+template <int d>
+class Stepper {
+  public:
+    Stepper(const SteppingState<d>& from, const Problem& problem, const SteppingOptions& options,
+            const std::function<void(const AcceptedStep<d>&)>& accept,
+            const Remeshing<d>& remeshing)
+        : state_(from),
+          problem_(problem),
+          options_(options),
+          accept_(accept),
+          remeshing_(remeshing),
+          stops_(options.stops) {
+        if (state_.displacement.size() == 0) {
+            state_.displacement = MatrixX::Zero(state_.reference->space->n_dofs(), d);
+        }
+        stops_.insert(stops_.end(), remeshing.times.begin(), remeshing.times.end());
+        stops_.push_back(options.end);
+        std::sort(stops_.begin(), stops_.end());
+        if (remeshing_.mesh && !state_.reference->space->is_isoparametric()) {
+            // Says what to do; better now than after hours.
+            static_cast<void>(deformed_body(*state_.reference, state_.displacement));
+        }
+        take_reference(state_.reference);
+        report_.t = state_.t;
+        step_ = state_.next_step > 0.0 ? state_.next_step : options.first_step;
+    }
+
+    SteppingReport run() {
+        if (!find_start()) {
+            return report_;
+        }
+        while (!is_at(options_.end)) {
+            if (is_remeshing_due() && !remesh(due_to_)) {
+                return report_;
+            }
+            if (options_.max_steps > 0 && state_.n_steps >= options_.max_steps) {
+                report_.finished = options_.control == Control::arc_length;
+                report_.reason = fmt::format("max_steps = {} are done at t = {:.6g}",
+                                             options_.max_steps, state_.t);
+                return report_;
+            }
+            if (!advance()) {
+                return report_;
+            }
+        }
+        report_.finished = true;
+        return report_;
+    }
+
+  private:
+    [[nodiscard]] bool is_at(double time) const {
+        return std::abs(state_.t - time) <= same_time * options_.end;
+    }
+
+    void take_reference(ReferencePtr<d> reference) {
+        state_.reference = std::move(reference);
+        body_ = std::make_unique<Equilibrium<d>>(state_.reference, problem_, options_.end,
+                                                 options_.n_gauss_points, options_.volumetric,
+                                                 options_.newton.solver);
+    }
+
+    /// Forces at the start, for the work of the first step.
+    bool find_start() {
+        const LoadState<d> loads = body_->loads_at(state_.t);
+        if (!body_->move_to(loads, to_unknowns(loads.constraints, state_.displacement))) {
+            const SmallestVolume<d>& at = body_->smallest_volume();
+            report_.reason = fmt::format("the start is folded: det F = {:.3g} in patch {} at {}",
+                                         at.det_F, at.patch, format_point(at.xi));
+            return false;
+        }
+        note_forces(loads);
+        return true;
+    }
+
+    void note_forces(const LoadState<d>& loads) {
+        forces_ = to_displacement(loads.constraints, body_->internal_forces());
+        reactions_ = support_reactions(problem_, loads.constraints, body_->residual());
+        energy_ = body_->energy();
+    }
+
+    /// The next time under load control.
+    [[nodiscard]] double target() const {
+        const double slack = same_time * options_.end;
+        const double t = state_.t + step_;
+        for (const double stop : stops_) {
+            if (stop > state_.t + slack && stop <= t + slack) {
+                return stop;
+            }
+        }
+        return t;
+    }
+
+    /// One accepted step; false at the end of what can be reached.
+    bool advance() {
+        int n_cuts = 0;
+        for (;;) {
+            SteppingState<d> next = state_;
+            NewtonReport newton;
+            double planned = step_;
+            if (options_.control == Control::load) {
+                next.t = target();
+                planned = next.t - state_.t;
+                newton = solve_newton(*body_, body_->loads_at(next.t), options_.newton,
+                                      next.displacement);
+            } else {
+                newton = arc_step(next);
+            }
+            report_.n_iterations += newton.iterations;
+            if (newton.converged) {
+                if (n_cuts == 0 && newton.iterations <= quick_iterations) {
+                    step_ = std::min(growth * step_, options_.largest_step);
+                }
+                take(next, newton, n_cuts);
+                return true;
+            }
+            log::info(fmt::format("t = {:.6g}: step {:.3g} given up: {}", state_.t, planned,
+                                  newton.reason));
+            if (planned <= options_.smallest_step * (1.0 + same_time)) {
+                if (remeshing_.mesh && remeshing_.on_failure && state_.t > state_.last_remeshing) {
+                    step_ = options_.first_step;
+                    return remesh("Newton failed");
+                }
+                report_.reason =
+                    fmt::format("no equilibrium beyond t = {:.6g} with the smallest step {:g}: {}",
+                                state_.t, planned, newton.reason);
+                return false;
+            }
+            step_ = std::max(0.5 * planned, options_.smallest_step);
+            ++n_cuts;
+            ++report_.n_cuts;
+        }
+    }
+
+    NewtonReport arc_step(SteppingState<d>& next) {
+        PathPoint<d> point{state_.t, state_.displacement, state_.direction, state_.time_direction,
+                           state_.displacement_scale};
+        NewtonReport newton = solve_arc_step(*body_, options_.newton, step_, point);
+        if (newton.converged && point.t > options_.end) {
+            // The end lies on the way.
+            MatrixX u = state_.displacement + (options_.end - state_.t) / (point.t - state_.t) *
+                                                  (point.displacement - state_.displacement);
+            const NewtonReport last =
+                solve_newton(*body_, body_->loads_at(options_.end), options_.newton, u);
+            newton = last;
+            point.t = options_.end;
+            point.displacement = u;
+        }
+        next.t = point.t;
+        next.displacement = point.displacement;
+        next.direction = point.direction;
+        next.time_direction = point.time_direction;
+        next.displacement_scale = point.displacement_scale;
+        return newton;
+    }
+
+    void take(const SteppingState<d>& next, const NewtonReport& newton, int n_cuts) {
+        AcceptedStep<d> accepted;
+        accepted.step = next.t - state_.t;
+        accepted.n_cuts = n_cuts;
+        accepted.newton = newton;
+        const MatrixX before = forces_;
+        const MatrixX moved = next.displacement - state_.displacement;
+        state_ = next;
+        note_forces(body_->loads_at(state_.t));
+        state_.work += 0.5 * (before + forces_).cwiseProduct(moved).sum();
+        state_.next_step = step_;
+        ++state_.n_steps;
+        report_.t = state_.t;
+        ++report_.n_steps;
+        publish(accepted);
+    }
+
+    void publish(AcceptedStep<d>& accepted) {
+        accepted.number = state_.n_steps;
+        accepted.energy = energy_;
+        accepted.applied_force = sum_of_components(body_->external_rows());
+        accepted.reactions = reactions_;
+        accepted.state = state_;
+        accept_(accepted);
+    }
+
+    /// Fills `due_to_`.
+    bool is_remeshing_due() {
+        if (!remeshing_.mesh || state_.n_remeshings >= remeshing_.max_remeshings) {
+            return false;
+        }
+        for (const double time : remeshing_.times) {
+            if (is_at(time) && state_.last_remeshing < time - same_time * options_.end) {
+                due_to_ = "time";
+                return true;
+            }
+        }
+        const bool watches =
+            remeshing_.shape_ratio || remeshing_.scaled_jacobian || remeshing_.angle_deviation;
+        if (!watches || !state_.watches_quality || !(state_.t > state_.last_remeshing)) {
+            return false;
+        }
+        due_to_ = fault(quality_of(deformed_body(*state_.reference, state_.displacement)));
+        return !due_to_.empty();
+    }
+
+    /// Which limit a quality misses; empty: none.
+    [[nodiscard]] std::string fault(const MeshQuality& quality) const {
+        if (remeshing_.shape_ratio && quality.shape_ratio > *remeshing_.shape_ratio) {
+            return fmt::format("shape ratio {:.3g} > {:.3g}", quality.shape_ratio,
+                               *remeshing_.shape_ratio);
+        }
+        if (remeshing_.scaled_jacobian && quality.scaled_jacobian < *remeshing_.scaled_jacobian) {
+            return fmt::format("scaled Jacobian {:.3g} < {:.3g}", quality.scaled_jacobian,
+                               *remeshing_.scaled_jacobian);
+        }
+        if (remeshing_.angle_deviation && quality.angle_deviation > *remeshing_.angle_deviation) {
+            return fmt::format("angle deviation {:.3g} > {:.3g}", quality.angle_deviation,
+                               *remeshing_.angle_deviation);
+        }
+        return {};
+    }
+
+    /// Goes over to a new mesh, in equilibrium at the same time; false if that failed.
+    bool remesh(const std::string& cause) {
+        RemeshingReport record;
+        record.t = state_.t;
+        record.cause = cause;
+        const MultiPatch<d> old_mesh = deformed_body(*state_.reference, state_.displacement);
+        const MeshQuality before = quality_of(old_mesh);
+        const SteppingState<d> old_state = state_;
+        const auto fail = [&](const std::string& why) {
+            report_.reason =
+                fmt::format("remeshing at t = {:.6g} ({}) failed: {}", record.t, cause, why);
+            return false;
+        };
+        try {
+            const MultiPatch<d> mesh = remeshing_.mesh(old_mesh);
+            if (signature(mesh) != signature(old_mesh)) {
+                throw TopologyError(
+                    "the new mesh has signature {}, the old one {}; they must be equal",
+                    signature(mesh), signature(old_mesh));
+            }
+            TransferOptions options;
+            options.n_gauss_points = options_.n_gauss_points;
+            TransferredState<d> moved = transfer_state(*state_.reference, problem_.kinematics,
+                                                       state_.displacement, mesh, options);
+            record.energy_before = energy_;
+            record.reactions_before = reactions_;
+            record.volume_before = volume(old_mesh);
+            record.gradient_drift = moved.gradient_drift;
+            record.min_det_F = moved.min_det_F;
+            record.largest_gap = moved.largest_gap;
+            state_.displacement = moved.reference.displacement;
+            take_reference(
+                std::make_shared<const ReferenceConfiguration<d>>(std::move(moved.reference)));
+        } catch (const Error& error) {
+            return fail(error.what());
+        }
+        const LoadState<d> loads = body_->loads_at(state_.t);
+        if (!body_->move_to(loads, to_unknowns(loads.constraints, state_.displacement))) {
+            return fail("the transferred state is folded");
+        }
+        record.energy_transferred = body_->energy();
+        AcceptedStep<d> accepted;
+        accepted.newton = solve_newton(*body_, loads, options_.newton, state_.displacement);
+        report_.n_iterations += accepted.newton.iterations;
+        record.n_iterations = accepted.newton.iterations;
+        if (!accepted.newton.converged) {
+            return fail("no equilibrium on the new mesh: " + accepted.newton.reason);
+        }
+        note_forces(loads);
+        const MultiPatch<d> new_mesh = deformed_body(*state_.reference, state_.displacement);
+        const MeshQuality after = quality_of(new_mesh);
+        record.energy_after = energy_;
+        record.reactions_after = reactions_;
+        record.volume_after = volume(new_mesh);
+        record.shape_ratio_before = before.shape_ratio;
+        record.shape_ratio_after = after.shape_ratio;
+        record.scaled_jacobian_before = before.scaled_jacobian;
+        record.scaled_jacobian_after = after.scaled_jacobian;
+        record.angle_deviation_before = before.angle_deviation;
+        record.angle_deviation_after = after.angle_deviation;
+        if (state_.watches_quality && !fault(after).empty() && cause != "time") {
+            log::warn(
+                fmt::format("t = {:.6g}: the new mesh still has {}; quality is no longer "
+                            "watched",
+                            state_.t, fault(after)));
+            state_.watches_quality = false;
+        }
+        ++state_.n_remeshings;
+        ++report_.n_remeshings;
+        state_.last_remeshing = state_.t;
+        state_.next_step = step_;
+        state_.direction.resize(0, 0);
+        log::info(fmt::format(
+            "t = {:.6g}: meshed again ({}): worst shape ratio {:.3g} -> {:.3g}, "
+            "scaled Jacobian {:.3g} -> {:.3g}, energy {:.6g} -> {:.6g}",
+            record.t, cause, before.shape_ratio, after.shape_ratio, before.scaled_jacobian,
+            after.scaled_jacobian, record.energy_before, record.energy_after));
+        accepted.remeshing = record;
+        publish(accepted);
+        return true;
+    }
+
+    SteppingState<d> state_;
+    const Problem& problem_;
+    const SteppingOptions& options_;
+    const std::function<void(const AcceptedStep<d>&)>& accept_;
+    const Remeshing<d>& remeshing_;
+    std::unique_ptr<Equilibrium<d>> body_;
+    SteppingReport report_;
+    double step_ = 0.0;
+    /// At the last equilibrium: internal forces n_dofs x d, reactions, stored energy.
+    MatrixX forces_;
+    std::map<std::string, Vector3> reactions_;
+    double energy_ = 0.0;
+    std::string due_to_;
+    std::vector<double> stops_;
+};
+
 }  // namespace
 
 template <int d>
@@ -59,64 +395,10 @@ template <int d>
 SteppingReport follow_loads(const SteppingState<d>& from, const Problem& problem,
                             const SteppingOptions& options,
                             const std::function<void(const AcceptedStep<d>&)>& accept,
-                            const Remeshing<d>& /*remeshing*/) {
+                            const Remeshing<d>& remeshing) {
     check_options(options);
     check_problem(problem);
-    const SpacePtr<d>& space = from.reference->space;
-    const SparseMatrix foundations = assemble_foundations(*space, problem, options.n_gauss_points);
-    require_held(*space, problem, make_constraints(*space, problem, {""}), foundations);
-    FiniteStrain<d> body(space, problem, options.n_gauss_points);
-    Newton<d> newton(*space, body, foundations, options.n_gauss_points, options.newton);
-
-    SteppingReport report;
-    SteppingState<d> state = from;
-    report.t = state.t;
-    double step = state.next_step > 0.0 ? state.next_step : options.first_step;
-    int n_cuts = 0;
-    // Equal up to the rounding of a sum of steps.
-    const double end = options.end * (1.0 - 1e-12);
-    while (state.t < end) {
-        const double t = state.t + step < end ? state.t + step : options.end;
-        const Problem now = at_time(problem, t, options.end);
-        const Constraints<d> constraints = make_constraints(*space, now, {""});
-        Problem dead = now;
-        std::erase_if(dead.pressures, [](const Pressure& load) { return load.follows_body; });
-        const MatrixX dead_loads = assemble_loads(*space, dead, "", options.n_gauss_points);
-        AcceptedStep<d> accepted;
-        accepted.newton = newton.solve(constraints, dead_loads, now, state.displacement);
-        report.n_iterations += accepted.newton.iterations;
-        if (!accepted.newton.converged) {
-            log::info(fmt::format("t = {:.6g}: step {:.3g} given up: {}", t, t - state.t,
-                                  accepted.newton.reason));
-            if (step <= options.smallest_step) {
-                report.reason = fmt::format(
-                    "no equilibrium at t = {:.6g} with the smallest step "
-                    "{:g} from t = {:.6g}: {}",
-                    t, step, state.t, accepted.newton.reason);
-                return report;
-            }
-            step = std::max(0.5 * (t - state.t), options.smallest_step);
-            ++n_cuts;
-            ++report.n_cuts;
-            continue;
-        }
-        accepted.step = t - state.t;
-        accepted.n_cuts = n_cuts;
-        accepted.energy = body.energy();
-        accepted.applied_force = sum_of_components(newton.external_forces());
-        accepted.reactions = support_reactions(problem, constraints, newton.residual());
-        state.t = report.t = t;
-        accepted.number = ++report.n_steps;
-        if (n_cuts == 0 && accepted.newton.iterations <= quick_iterations) {
-            step = std::min(growth * step, options.largest_step);
-        }
-        n_cuts = 0;
-        state.next_step = step;
-        accepted.state = state;
-        accept(accepted);
-    }
-    report.finished = true;
-    return report;
+    return Stepper<d>(from, problem, options, accept, remeshing).run();
 }
 
 template SteppingState<2> make_start(const SpacePtr<2>&);

@@ -29,6 +29,8 @@ struct SteppingOptions {
     double largest_step = 0.25;
     /// Accepted steps after which a run ends; 0: no limit. An arc-length run needs one.
     int max_steps = 0;
+    /// Times that a step ends at, whatever its length: corners of tables, probes. Ascending.
+    std::vector<double> stops;
     NewtonOptions newton;
     /// Gauss points per direction and element; nothing: degree + 1 of the space.
     std::optional<int> n_gauss_points;
@@ -46,12 +48,17 @@ struct SteppingState {
     MatrixX displacement;
     /// Work that loads and supports have done on the body.
     double work = 0.0;
-    /// Arc length: direction of the last step in displacements and in time; empty: along growing
-    /// time.
+    /// Arc length, see `PathPoint`.
     MatrixX direction;
     double time_direction = 0.0;
-    /// How often the body was meshed again.
+    double displacement_scale = 0.0;
+    /// Accepted steps so far, remeshings among them not counted.
+    int n_steps = 0;
+    /// How often the body was meshed again, and when last.
     int n_remeshings = 0;
+    double last_remeshing = -1.0;
+    /// False once a remeshing could not bring the quality within its limits.
+    bool watches_quality = true;
 };
 
 /// What a remeshing did, before and after.

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "iga/assembly/follower_pressure.h"
-#include "iga/assembly/sparsity.h"
 #include "iga/core/error.h"
 #include "iga/core/format.h"
 #include "iga/core/log.h"
-#include "iga/linalg/cholmod_solver.h"
-#include "iga/solve/static_system.h"
 
 namespace couture::iga {
 
@@ -20,6 +16,8 @@ constexpr int max_halvings = 8;
 constexpr double sufficient_decrease = 0.95;
 /// Forces below this share of |tangent| |u| are rounding.
 constexpr double rounding = 1e-14;
+/// Step in time, relative to it, for the derivative of the loads: exact where they are linear.
+constexpr double time_difference = 1e-4;
 
 /// Norm over the free unknowns.
 double free_norm(const VectorX& r, const std::vector<char>& is_fixed) {
@@ -38,96 +36,49 @@ double free_dot(const VectorX& a, const VectorX& b, const std::vector<char>& is_
     return sum;
 }
 
-double largest_entry(const Buffer<double>& values) {
-    double largest = 0.0;
-    for (const double value : values) {
-        largest = std::max(largest, std::abs(value));
-    }
-    return largest;
+template <int d>
+std::string fold(const Equilibrium<d>& body) {
+    const SmallestVolume<d>& at = body.smallest_volume();
+    return fmt::format("det F = {:.3g} in patch {} at {}", at.det_F, at.patch, format_point(at.xi));
+}
+
+/// One iteration is noted; true if the residual is small enough.
+template <int d>
+bool note_residual(const Equilibrium<d>& body, const LoadState<d>& loads,
+                   const NewtonOptions& options, double floor, NewtonReport& report) {
+    const double scale = std::max(body.external_forces().norm(), body.internal_forces().norm());
+    const double size = free_norm(body.residual(), loads.constraints.is_fixed);
+    report.residuals.push_back(scale > 0.0 ? size / scale : 0.0);
+    report.min_det_F = body.smallest_volume().det_F;
+    log::detail(fmt::format("newton {}: residual {:.2e}, det F >= {:.3g}", report.iterations,
+                            report.residuals.back(), report.min_det_F));
+    return size <= std::max(options.tolerance * scale, floor);
+}
+
+std::string not_converged(const NewtonReport& report, const NewtonOptions& options) {
+    return fmt::format("|r|/|f| = {:.1e} > {:.0e} after {} iterations", report.residuals.back(),
+                       options.tolerance, report.iterations);
 }
 
 }  // namespace
 
 template <int d>
-Newton<d>::Newton(const Space<d>& space, FiniteStrain<d>& body, const SparseMatrix& foundations,
-                  std::optional<int> n_gauss_points, const NewtonOptions& options)
-    : space_(space),
-      body_(body),
-      foundations_(foundations),
-      n_gauss_points_(n_gauss_points),
-      options_(options),
-      solver_(make_linear_solver(options.solver)),
-      matrix_(make_pattern(space, d)) {}
-
-template <int d>
-VectorX Newton<d>::internal_forces(const MatrixX& u) const {
-    VectorX forces = flatten(body_.internal_forces());
-    if (foundations_.nonZeros() > 0) {
-        forces += foundations_ * flatten(u);
-    }
-    return forces;
-}
-
-template <int d>
-MatrixX Newton<d>::solve_tangent(const std::vector<char>& is_fixed, const MatrixX& b) {
-    MatrixX x;
-    try {
-        // Ordered once: the pattern stays.
-        solver_->factorize({matrix_, is_fixed, {}});
-        solver_->solve(b, x);
-    } catch (const NotPositiveDefinite& error) {
-        log::detail("the tangent is indefinite, LU instead of Cholesky");
-        SolverOptions options = options_.solver;
-        options.name = "umfpack";
-        const std::unique_ptr<LinearSolver> lu = make_linear_solver(options);
-        lu->factorize({matrix_, is_fixed, {}});
-        lu->solve(b, x);
-    }
-    return x;
-}
-
-template <int d>
-NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& dead_loads,
-                              const Problem& problem, MatrixX& u) {
+NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
+                          const NewtonOptions& options, MatrixX& displacement) {
     NewtonReport report;
+    const Constraints<d>& constraints = loads.constraints;
     const std::vector<char>& is_fixed = constraints.is_fixed;
-    MatrixX now = flatten(u);
-    constraints.to_frames(now);
-    FollowerPressure follower;
-    // External forces in the frames.
-    VectorX f;
-    SmallestVolume<d> smallest;
-    VectorX forces;
-    // Moves the body; false if it is folded there.
-    const auto move_to = [&](const MatrixX& unknowns) {
-        MatrixX global = unknowns;
-        constraints.to_global(global);
-        const MatrixX rows = unflatten(global.col(0), d);
-        smallest = body_.deform(rows);
-        if (!(smallest.det_F > 0.0)) {
-            return false;
-        }
-        follower = assemble_follower_pressure(space_, problem, rows, n_gauss_points_);
-        external_ = dead_loads + follower.forces;
-        MatrixX both(now.rows(), 2);
-        both << internal_forces(rows), flatten(external_);
-        constraints.to_frames(both);
-        forces = both.col(0);
-        f = both.col(1);
-        return forces.allFinite();
-    };
+    MatrixX now = to_unknowns(constraints, displacement);
     const auto fail = [&](const std::string& why) {
         report.reason = why;
         return report;
     };
-
-    if (!move_to(now)) {
-        return fail(fmt::format("the start is folded: det F = {:.3g} in patch {} at {}",
-                                smallest.det_F, smallest.patch, format_point(smallest.xi)));
+    if (!body.move_to(loads, now)) {
+        return fail("the start is folded: " + fold(body));
     }
     double floor = 0.0;
     for (;; ++report.iterations) {
-        const VectorX r = forces - f;
+        const VectorX r = body.residual();
         VectorX jump = VectorX::Zero(r.size());
         for (Eigen::Index i = 0; i < r.size(); ++i) {
             if (is_fixed[i] != 0) {
@@ -135,33 +86,21 @@ NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& 
             }
         }
         const bool has_jump = jump.cwiseAbs().maxCoeff() > 0.0;
-        const double scale = std::max(f.norm(), forces.norm());
         const double size = free_norm(r, is_fixed);
-        report.residuals.push_back(scale > 0.0 ? size / scale : 0.0);
-        log::detail(fmt::format("newton {}: residual {:.2e}, det F >= {:.3g}", report.iterations,
-                                report.residuals.back(), smallest.det_F));
-        if (!has_jump && size <= std::max(options_.tolerance * scale, floor)) {
-            constraints.to_global(now);
-            u = unflatten(now.col(0), d);
-            residual_ = r;
+        if (note_residual(body, loads, options, floor, report) && !has_jump) {
+            displacement = body.displacement();
             report.converged = true;
-            report.min_det_F = smallest.det_F;
             return report;
         }
-        if (report.iterations == options_.max_iterations) {
-            return fail(fmt::format("|r|/|f| = {:.1e} > {:.0e} after {} iterations",
-                                    report.residuals.back(), options_.tolerance,
-                                    report.iterations));
+        if (report.iterations == options.max_iterations) {
+            return fail(not_converged(report, options));
         }
 
-        body_.tangent(matrix_);
-        add_symmetric(matrix_, foundations_);
-        add_symmetric(matrix_, follower.stiffness);
-        rotate_to_frames(matrix_, constraints);
-        floor = rounding * largest_entry(matrix_.values) * now.norm();
+        body.linearize(loads);
+        floor = rounding * body.stiffness_scale() * now.norm();
         MatrixX step;
         try {
-            step = solve_tangent(is_fixed, -r - matrix_ * MatrixX(jump));
+            step = body.solve(loads, has_jump ? MatrixX(-r - body.apply(jump)) : MatrixX(-r));
         } catch (const SolverError& error) {
             return fail(error.what());
         }
@@ -173,8 +112,7 @@ NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& 
         const MatrixX start = now;
         const double work = free_dot(r, step.col(0), is_fixed);
         double share = 1.0;
-        int halvings = 0;
-        for (;; ++halvings, share *= 0.5) {
+        for (int halvings = 0;; ++halvings, share *= 0.5) {
             now = start + share * step;
             if (share == 1.0) {
                 // Exactly what is prescribed.
@@ -182,8 +120,9 @@ NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& 
                     now(i, 0) = is_fixed[i] != 0 ? constraints.values(i, 0) : now(i, 0);
                 }
             }
-            if (move_to(now)) {
-                const VectorX trial = forces - f;
+            const bool is_unfolded = body.move_to(loads, now);
+            if (is_unfolded) {
+                const VectorX trial = body.residual();
                 // Supports that move raise the residual: nothing to compare with.
                 if (has_jump || free_norm(trial, is_fixed) <= sufficient_decrease * size ||
                     std::abs(free_dot(trial, step.col(0), is_fixed)) <=
@@ -193,18 +132,125 @@ NewtonReport Newton<d>::solve(const Constraints<d>& constraints, const MatrixX& 
                 }
             }
             if (halvings == max_halvings) {
-                return fail(smallest.det_F > 0.0
-                                ? fmt::format("no step along the search direction lowers the "
-                                              "residual {:.1e}",
-                                              report.residuals.back())
-                                : fmt::format("det F = {:.3g} in patch {} at {}", smallest.det_F,
-                                              smallest.patch, format_point(smallest.xi)));
+                return fail(is_unfolded ? fmt::format("no step along the search direction lowers "
+                                                      "the residual {:.1e}",
+                                                      report.residuals.back())
+                                        : fold(body));
             }
         }
     }
 }
 
-template class Newton<2>;
-template class Newton<3>;
+template <int d>
+NewtonReport solve_arc_step(Equilibrium<d>& body, const NewtonOptions& options, double length,
+                            PathPoint<d>& point) {
+    NewtonReport report;
+    const auto fail = [&](const std::string& why) {
+        report.reason = why;
+        return report;
+    };
+    LoadState<d> loads = body.loads_at(point.t);
+    const std::vector<char>& is_fixed = loads.constraints.is_fixed;
+    const MatrixX start = to_unknowns(loads.constraints, point.displacement);
+    MatrixX now = start;
+    double t = point.t;
+    double scale = point.displacement_scale;
+    double dt = 0.0;
+    double floor = 0.0;
+    if (!body.move_to(loads, now)) {
+        return fail("the start is folded: " + fold(body));
+    }
+    for (;; ++report.iterations) {
+        const VectorX r = body.residual();
+        const bool is_start = report.iterations == 0;
+        VectorX jump = VectorX::Zero(r.size());
+        for (Eigen::Index i = 0; i < r.size(); ++i) {
+            jump[i] = is_fixed[i] != 0 ? loads.constraints.values(i, 0) - now(i, 0) : 0.0;
+        }
+        if (note_residual(body, loads, options, floor, report) && !is_start &&
+            jump.cwiseAbs().maxCoeff() == 0.0) {
+            point.t = t;
+            point.direction = body.displacement() - point.displacement;
+            point.time_direction = dt;
+            point.displacement = body.displacement();
+            point.displacement_scale = scale;
+            report.converged = true;
+            return report;
+        }
+        if (report.iterations == options.max_iterations) {
+            return fail(not_converged(report, options));
+        }
+        // Change of loads and supports with time, at this place.
+        body.linearize(loads);
+        floor = rounding * body.stiffness_scale() * now.norm();
+        const double h = time_difference * std::max(length, std::abs(t));
+        const LoadState<d> later = body.loads_at(t + h);
+        MatrixX support_rate = (later.constraints.values - loads.constraints.values) / h;
+        const VectorX external = body.external_forces();
+        if (!body.move_to(later, now)) {
+            return fail(fold(body));
+        }
+        const VectorX load_rate = (body.external_forces() - external) / h;
+        MatrixX rhs(r.size(), 2);
+        rhs << -r - body.apply(jump), load_rate - body.apply(support_rate);
+        MatrixX solutions;
+        try {
+            solutions = body.solve(loads, rhs);
+        } catch (const SolverError& error) {
+            return fail(error.what());
+        }
+        const VectorX a = solutions.col(0) + jump;
+        const VectorX b = solutions.col(1) + support_rate.col(0);
+        if (!a.allFinite() || !b.allFinite() || b.norm() == 0.0) {
+            return fail("the linear system has no finite solution, or nothing depends on time");
+        }
+        if (scale == 0.0) {
+            scale = b.norm();
+        }
+        double step_t = 0.0;
+        if (is_start) {
+            step_t = length / std::sqrt(0.5 * (b.squaredNorm() / (scale * scale) + 1.0));
+            if (point.direction.size() > 0) {
+                const MatrixX before = to_unknowns(loads.constraints, point.direction);
+                const double ahead = b.dot(before.col(0)) / (scale * scale) + point.time_direction;
+                step_t = ahead < 0.0 ? -step_t : step_t;
+            }
+        } else {
+            const VectorX moved = (now - start).col(0);
+            const double gap =
+                0.5 * (moved.squaredNorm() / (scale * scale) + dt * dt) - length * length;
+            const double slope = moved.dot(b) / (scale * scale) + dt;
+            if (slope == 0.0) {
+                return fail("the path turns back within one step");
+            }
+            step_t = -(gap + moved.dot(a) / (scale * scale)) / slope;
+        }
+        const MatrixX before = now;
+        const double dt_before = dt;
+        double share = 1.0;
+        for (int halvings = 0;; ++halvings, share *= 0.5) {
+            now = before + share * (a + step_t * b);
+            dt = dt_before + share * step_t;
+            t = point.t + dt;
+            loads = body.loads_at(t);
+            for (Eigen::Index i = 0; share == 1.0 && i < now.rows(); ++i) {
+                now(i, 0) = is_fixed[i] != 0 ? loads.constraints.values(i, 0) : now(i, 0);
+            }
+            if (body.move_to(loads, now)) {
+                break;
+            }
+            if (halvings == max_halvings) {
+                return fail(fold(body));
+            }
+        }
+    }
+}
+
+template NewtonReport solve_newton(Equilibrium<2>&, const LoadState<2>&, const NewtonOptions&,
+                                   MatrixX&);
+template NewtonReport solve_newton(Equilibrium<3>&, const LoadState<3>&, const NewtonOptions&,
+                                   MatrixX&);
+template NewtonReport solve_arc_step(Equilibrium<2>&, const NewtonOptions&, double, PathPoint<2>&);
+template NewtonReport solve_arc_step(Equilibrium<3>&, const NewtonOptions&, double, PathPoint<3>&);
 
 }  // namespace couture::iga

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "iga/assembly/constraints.h"
-#include "iga/assembly/finite_strain.h"
-#include "iga/linalg/sparse_solver.h"
+#include <string>
+#include <vector>
+
+#include "iga/solve/equilibrium.h"
 
 namespace couture::iga {
 
@@ -25,41 +26,36 @@ struct NewtonReport {
     std::string reason;
 };
 
-/// Equilibrium of a hyperelastic body under given loads, those of `FollowerPressure` among them, by
-/// Newton's method with a backtracking line search: a step is halved while det F <= 0 somewhere, or
-/// while neither the residual nor its work on the step falls.
+/// Equilibrium under given loads by Newton's method with a backtracking line search: a step is
+/// halved while det F <= 0 somewhere, or while neither the residual nor its work on the step falls.
+///
+/// @param displacement  n_dofs x d: the start; the equilibrium, if it is found, else unchanged
 template <int d>
-class Newton {
-  public:
-    /// All must outlive this. @param foundations  over the unknowns; may be empty
-    Newton(const Space<d>& space, FiniteStrain<d>& body, const SparseMatrix& foundations,
-           std::optional<int> n_gauss_points, const NewtonOptions& options);
+[[nodiscard]] NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
+                                        const NewtonOptions& options, MatrixX& displacement);
 
-    /// @param constraints  prescribed displacements in column 0 of their values
-    /// @param dead_loads  n_dofs x d
-    /// @param problem  whose pressures follow the body, at this time
-    /// @param u  n_dofs x d: the start; the equilibrium, if it is found, else unchanged
-    NewtonReport solve(const Constraints<d>& constraints, const MatrixX& dead_loads,
-                       const Problem& problem, MatrixX& u);
-
-    /// Internal minus external forces over the unknowns, in the frames of the last solution.
-    [[nodiscard]] const VectorX& residual() const { return residual_; }
-    /// Dead and follower loads of the last solution, n_dofs x d.
-    [[nodiscard]] const MatrixX& external_forces() const { return external_; }
-
-  private:
-    [[nodiscard]] VectorX internal_forces(const MatrixX& u) const;
-    [[nodiscard]] MatrixX solve_tangent(const std::vector<char>& is_fixed, const MatrixX& b);
-
-    const Space<d>& space_;
-    FiniteStrain<d>& body_;
-    const SparseMatrix& foundations_;
-    std::optional<int> n_gauss_points_;
-    NewtonOptions options_;
-    std::unique_ptr<LinearSolver> solver_;
-    BlockMatrix matrix_;
-    VectorX residual_;
-    MatrixX external_;
+/// A point of a path of equilibria, and its tangent there.
+template <int d>
+struct PathPoint {
+    double t = 0.0;
+    /// n_dofs x d.
+    MatrixX displacement;
+    /// Of the last step, in displacements and time; empty: along growing time.
+    MatrixX direction;
+    double time_direction = 0.0;
+    /// |du / dt| where the path began: what displacements are measured by; 0: not yet known.
+    double displacement_scale = 0.0;
 };
+
+/// One step along a path of equilibria, through limit points of the load: displacement and time
+/// move so that 1/2 (|du| / scale)^2 + 1/2 dt^2 = length^2.
+///
+/// @param point  the start; the new point, if it is found, else unchanged
+///
+/// Source: [Crisfield91] Sec. 9.3. Differs: the constraint is linearised in each iteration like the
+/// equilibrium, as all loads and supports may depend on time in any way.
+template <int d>
+[[nodiscard]] NewtonReport solve_arc_step(Equilibrium<d>& body, const NewtonOptions& options,
+                                          double length, PathPoint<d>& point);
 
 }  // namespace couture::iga

@@ -70,31 +70,29 @@ class GrevilleCollocation {
 }  // namespace
 
 template <int d>
-MatrixX interpolate(const TensorSpace<d>& space, int dimension,
-                    const std::function<VectorX(const Vector<d>&)>& function) {
+std::vector<Vector<d>> greville_points(const TensorSpace<d>& space) {
     std::array<std::vector<double>, d> points;
     for (int k = 0; k < d; ++k) {
         points[k] = space.knots[k].greville();
     }
-    MatrixX current(space.n_basis(), dimension);
+    std::vector<Vector<d>> result(space.n_basis());
     for (int i = 0; i < space.n_basis(); ++i) {
         const std::array<int, d> indices = space.indices(i);
-        Vector<d> xi;
         for (int k = 0; k < d; ++k) {
-            xi[k] = points[k][indices[k]];
+            result[i][k] = points[k][indices[k]];
         }
-        const VectorX value = function(xi);
-        if (value.size() != dimension) {
-            throw InputError("interpolate: the function returns {} numbers; {} were promised",
-                             value.size(), dimension);
-        }
-        if (!value.allFinite()) {
-            throw InputError(
-                "interpolate: the function is not finite at Greville point {}, xi[0] = {}", i,
-                xi[0]);
-        }
-        current.row(i) = value.transpose();
     }
+    return result;
+}
+
+template <int d>
+MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values) {
+    if (values.rows() != space.n_basis()) {
+        throw InputError("interpolate: {} rows of values for {} functions", values.rows(),
+                         space.n_basis());
+    }
+    MatrixX current = values;
+    const Eigen::Index dimension = values.cols();
     // Each step solves along the first index and moves it behind the others.
     for (const KnotVector& knots : space.knots) {
         const Eigen::Index n = knots.n_basis();
@@ -107,6 +105,34 @@ MatrixX interpolate(const TensorSpace<d>& space, int dimension,
     return unfolded.transpose();
 }
 
+template <int d>
+MatrixX interpolate(const TensorSpace<d>& space, int dimension,
+                    const std::function<VectorX(const Vector<d>&)>& function) {
+    const std::vector<Vector<d>> points = greville_points(space);
+    MatrixX values(space.n_basis(), dimension);
+    for (int i = 0; i < space.n_basis(); ++i) {
+        const Vector<d>& xi = points[i];
+        const VectorX value = function(xi);
+        if (value.size() != dimension) {
+            throw InputError("interpolate: the function returns {} numbers; {} were promised",
+                             value.size(), dimension);
+        }
+        if (!value.allFinite()) {
+            throw InputError(
+                "interpolate: the function is not finite at Greville point {}, xi[0] = {}", i,
+                xi[0]);
+        }
+        values.row(i) = value.transpose();
+    }
+    return interpolate<d>(space, values);
+}
+
+template std::vector<Vector<1>> greville_points(const TensorSpace<1>&);
+template std::vector<Vector<2>> greville_points(const TensorSpace<2>&);
+template std::vector<Vector<3>> greville_points(const TensorSpace<3>&);
+template MatrixX interpolate<1>(const TensorSpace<1>&, const MatrixX&);
+template MatrixX interpolate<2>(const TensorSpace<2>&, const MatrixX&);
+template MatrixX interpolate<3>(const TensorSpace<3>&, const MatrixX&);
 template MatrixX interpolate<1>(const TensorSpace<1>&, int,
                                 const std::function<VectorX(const Vector<1>&)>&);
 template MatrixX interpolate<2>(const TensorSpace<2>&, int,

@@ -18,4 +18,12 @@ template <int d>
 [[nodiscard]] MatrixX interpolate(const TensorSpace<d>& space, int dimension,
                                   const std::function<VectorX(const Vector<d>&)>& function);
 
+/// The same for values at hand. @param values  n_basis rows, in the order of the functions
+template <int d>
+[[nodiscard]] MatrixX interpolate(const TensorSpace<d>& space, const MatrixX& values);
+
+/// Greville points of the functions, in their order.
+template <int d>
+[[nodiscard]] std::vector<Vector<d>> greville_points(const TensorSpace<d>& space);
+
 }  // namespace couture::iga

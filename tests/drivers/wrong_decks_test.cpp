@@ -73,7 +73,7 @@ TEST_CASE("deck: unknown keys and sections", "[drivers]") {
           "      |   ^~~~~~~");
     CHECK(error_of(replaced("degree = 2", "smoothness = 2")) ==
           "bracket.toml:5: unknown key 'smoothness' in [discretization]; there are 'degree', "
-          "'elements', 'gauss_points'\n"
+          "'elements', 'gauss_points', 'volumetric'\n"
           "    5 | smoothness = 2\n"
           "      | ^~~~~~~~~~");
     CHECK(error_of(replaced("[[pressure]]", "[[flux]]")) ==

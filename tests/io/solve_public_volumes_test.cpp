@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 #include "iga/solve/linear_static.h"
 #include "io/spline_file.h"
 #include "tests/data_folder.h"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 #include "tests/iga/post/quadratic_fields.h"
 
 using namespace couture;

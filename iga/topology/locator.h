@@ -25,10 +25,13 @@ class Locator {
     [[nodiscard]] std::optional<Location<d>> find(const Vector3& point, double tolerance) const;
     /// The nearest place of the body and its distance.
     [[nodiscard]] std::pair<Location<d>, double> nearest(const Vector3& point) const;
+    /// The same for a point that is likely in `patch`: the others are searched only if it is not.
+    [[nodiscard]] std::pair<Location<d>, double> nearest(const Vector3& point, int patch) const;
 
   private:
     std::vector<PointInversion<d>> patches_;
     int dimension_;
+    double size_;
 };
 
 }  // namespace couture::iga

@@ -1,4 +1,4 @@
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

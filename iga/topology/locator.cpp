@@ -1,11 +1,19 @@
-#include "iga/post/locator.h"
+#include "iga/topology/locator.h"
 
 #include <limits>
 
 namespace couture::iga {
 
+namespace {
+
+/// Distances below this part of the body's size are rounding.
+constexpr double inside = 1e-12;
+
+}  // namespace
+
 template <int d>
-Locator<d>::Locator(const MultiPatch<d>& geometry) : dimension_(geometry.dimension()) {
+Locator<d>::Locator(const MultiPatch<d>& geometry)
+    : dimension_(geometry.dimension()), size_(geometry.size()) {
     for (const Patch<d>& patch : geometry.patches) {
         patches_.emplace_back(patch);
     }
@@ -32,6 +40,15 @@ std::pair<Location<d>, double> Locator<d>::nearest(const Vector3& point) const {
         }
     }
     return {place, distance};
+}
+
+template <int d>
+std::pair<Location<d>, double> Locator<d>::nearest(const Vector3& point, int patch) const {
+    const InvertedPoint<d> found = patches_[patch].nearest(point.head(dimension_));
+    if (found.distance <= inside * size_) {
+        return {{patch, found.xi}, found.distance};
+    }
+    return nearest(point);
 }
 
 template class Locator<2>;

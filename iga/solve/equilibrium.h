@@ -1,0 +1,99 @@
+#pragma once
+
+#include <memory>
+
+#include "iga/assembly/constraints.h"
+#include "iga/assembly/finite_strain.h"
+#include "iga/assembly/follower_pressure.h"
+#include "iga/linalg/sparse_solver.h"
+
+namespace couture::iga {
+
+/// What acts on a body at one time.
+template <int d>
+struct LoadState {
+    double t = 0.0;
+    /// The problem with its values at t.
+    Problem problem;
+    /// Prescribed displacements in column 0 of the values.
+    Constraints<d> constraints;
+    /// Work of the loads that do not follow the body on the functions, n_dofs x d.
+    MatrixX dead_loads;
+};
+
+/// Forces on a hyperelastic body at a displacement, and their linearisation. Unknowns are total
+/// displacements d * dof + component, in the frames of the constraints.
+template <int d>
+class Equilibrium {
+  public:
+    /// @param problem  must outlive this
+    /// @param end  time at which loads that do not name t have the value that they are given
+    /// @throws InputError, TopologyError  as `solve_linear_static`
+    Equilibrium(ReferencePtr<d> reference, const Problem& problem, double end,
+                std::optional<int> n_gauss_points, Volumetric volumetric,
+                const SolverOptions& solver);
+
+    [[nodiscard]] LoadState<d> loads_at(double t) const;
+
+    /// Moves the body to `unknowns` (one column) under these loads; false where it is folded there:
+    /// forces have no meaning then.
+    [[nodiscard]] bool move_to(const LoadState<d>& loads, const MatrixX& unknowns);
+    [[nodiscard]] const SmallestVolume<d>& smallest_volume() const { return smallest_; }
+
+    /// Of the place moved to: forces of stress and foundations, of the loads, and the difference
+    /// of the first and the second.
+    [[nodiscard]] const VectorX& internal_forces() const { return internal_; }
+    [[nodiscard]] const VectorX& external_forces() const { return external_; }
+    [[nodiscard]] VectorX residual() const { return internal_ - external_; }
+    [[nodiscard]] double energy() const { return body_.energy(); }
+    /// Loads in the axes' directions, n_dofs x d.
+    [[nodiscard]] const MatrixX& external_rows() const { return external_rows_; }
+    /// n_dofs x d.
+    [[nodiscard]] const MatrixX& displacement() const { return displacement_; }
+
+    /// Assembles the derivative of the residual by the unknowns where the body is.
+    void linearize(const LoadState<d>& loads);
+    /// The derivative times columns.
+    [[nodiscard]] MatrixX apply(const MatrixX& x) const;
+    /// Solves for columns, zero at fixed unknowns. Cholesky while the tangent is symmetric and
+    /// positive definite, LU where it is not.
+    /// @throws SolverError  if the tangent is singular
+    [[nodiscard]] MatrixX solve(const LoadState<d>& loads, const MatrixX& b);
+    /// Largest entry of the derivative.
+    [[nodiscard]] double stiffness_scale() const;
+
+    [[nodiscard]] const FiniteStrain<d>& body() const { return body_; }
+
+  private:
+    [[nodiscard]] BlockMatrix extended_matrix() const;
+
+    ReferencePtr<d> reference_;
+    SpacePtr<d> undeformed_;
+    const Problem& problem_;
+    double end_;
+    std::optional<int> n_gauss_points_;
+    SolverOptions solver_options_;
+    SparseMatrix foundations_;
+    FiniteStrain<d> body_;
+    std::unique_ptr<LinearSolver> solver_;
+
+    MatrixX displacement_;
+    SmallestVolume<d> smallest_;
+    MatrixX external_rows_;
+    VectorX internal_;
+    VectorX external_;
+    FollowerPressure follower_;
+
+    BlockMatrix matrix_;
+    /// What a follower pressure on an open rim adds: over the unknowns, antisymmetric.
+    SparseMatrix skew_;
+    std::optional<VolumetricCoupling> coupling_;
+};
+
+/// n_dofs x d as unknowns in the frames of the constraints, one column, and back.
+template <int d>
+[[nodiscard]] MatrixX to_unknowns(const Constraints<d>& constraints, const MatrixX& displacement);
+template <int d>
+[[nodiscard]] MatrixX to_displacement(const Constraints<d>& constraints, const MatrixX& unknowns);
+
+}  // namespace couture::iga

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "iga/assembly/reference_configuration.h"
+#include "iga/mechanics/problem.h"
+
+namespace couture::iga {
+
+/// A deformed body on a new mesh.
+template <int d>
+struct TransferredState {
+    ReferenceConfiguration<d> reference;
+    /// |F_b - F| over |F - I| in L2, F that of the transferred displacement.
+    double gradient_drift = 0.0;
+    /// Smallest det F_b at the quadrature points.
+    double min_det_F = 1.0;
+    /// Farthest that a point of the new mesh lay outside the old one, a length.
+    double largest_gap = 0.0;
+};
+
+struct TransferOptions {
+    std::optional<int> n_gauss_points;
+    /// Largest accepted distance of a point of the new mesh to the old one, relative to the body's
+    /// size: curved faces are met to the accuracy of their elements only.
+    double tolerance = 0.02;
+};
+
+/// Carries displacement and deformation gradient to a new mesh of the deformed body. Displacement:
+/// interpolated at the Greville points of the new functions, each found in the old mesh by point
+/// inversion and evaluated there. Deformation gradient: evaluated likewise at the quadrature points
+/// and projected onto the new functions in L2. Points outside the old mesh take the values of the
+/// nearest point.
+///
+/// @param displacement  total, n_dofs x d of the old reference
+/// @param mesh  the deformed body; its own functions become the new ones
+/// @throws GeometryError  if a point is too far outside (patch, place, distance), or if det F_b is
+///                        not positive at a quadrature point
+///
+/// Source: [Maquart19] Sec. 7.1.2.3.
+template <int d>
+[[nodiscard]] TransferredState<d> transfer_state(const ReferenceConfiguration<d>& old,
+                                                 Kinematics kinematics, const MatrixX& displacement,
+                                                 const MultiPatch<d>& mesh,
+                                                 const TransferOptions& options = {});
+
+/// The body that a displacement makes of a reference: its control points moved.
+///
+/// @throws InputError  if the field's functions are not those of the geometry
+template <int d>
+[[nodiscard]] MultiPatch<d> deformed_body(const ReferenceConfiguration<d>& reference,
+                                          const MatrixX& displacement);
+
+}  // namespace couture::iga
