@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "iga/topology/multipatch_interpolate.h"
 #include "verification/calculix_tools.h"
 #include "verification/problem_tools.h"
 
@@ -16,6 +17,7 @@ constexpr double difference_bound = 1e-4;
 constexpr double position_bound = 1e-6;
 constexpr double shear_modulus = 3.0;
 constexpr double bulk_modulus = 20.0;
+constexpr double cook_shear_modulus = 0.375;
 
 /// Largest difference, and that in the mean square, over the same of the expected values.
 void record_differences(Recorder& recorder, const std::string& what, const MatrixX& expected,
@@ -72,7 +74,7 @@ void distorted_block(Recorder& recorder) {
 /// Cook's membrane as a slab one element thick whose faces keep their z.
 void cook_slab(Recorder& recorder) {
     const MultiPatch<3> slab = refine<3>(part<3>("cook_3d"), 1, std::array<int, 3>{24, 24, 1});
-    Problem problem = neo_hookean_problem(Kinematics::solid, 0.375, 1.0);
+    Problem problem = neo_hookean_problem(Kinematics::solid, cook_shear_modulus, 1.0);
     problem.supports = {make_support("clamped", 0.0, 0.0), make_support("z_low", {}, {}, 0.0),
                         make_support("z_high", {}, {}, 0.0)};
     Traction load;
@@ -82,11 +84,86 @@ void cook_slab(Recorder& recorder) {
     compare(recorder, std::make_shared<const Space<3>>(slab), problem, 0.1);
 }
 
+/// The node at a place.
+int node_at(const io::HexMesh& mesh, const Vector3& place) {
+    Eigen::Index nearest = 0;
+    (mesh.nodes.rowwise() - place.transpose()).rowwise().norm().minCoeff(&nearest);
+    return static_cast<int>(nearest);
+}
+
+/// The slab with bricks of 20 nodes. A uniform traction on the rectangular faces of the loaded side
+/// gives -1/12 of a face's force to each corner and 1/3 to each middle of an edge.
+io::CalculixModel quadratic_cook(int n_elements, double kappa) {
+    constexpr std::array<int, 4> corners = {1, 2, 5, 6};
+    constexpr std::array<int, 4> middles = {9, 13, 17, 18};
+    io::CalculixModel model;
+    model.mesh = io::make_hexahedra(
+        *io::make_hexahedral_space(part<3>("cook_3d"), 2, {n_elements, n_elements, 1}));
+    model.material = make_hyperelastic(StoredEnergy::neo_hookean, cook_shear_modulus, kappa);
+    model.is_reduced = true;
+    model.is_automatic = true;
+    for (const int node : model.mesh.node_sets.at("clamped")) {
+        model.displacements.push_back({node, 0, 0.0});
+        model.displacements.push_back({node, 1, 0.0});
+    }
+    for (int node = 0; node < model.mesh.nodes.rows(); ++node) {
+        model.displacements.push_back({node, 2, 0.0});
+    }
+    const double force_on_face = 1.0 / n_elements;
+    for (long e = 0; e < model.mesh.elements.rows(); ++e) {
+        if (model.mesh.places[e].element[0] == n_elements - 1) {
+            for (int i = 0; i < 4; ++i) {
+                model.forces.push_back(
+                    {model.mesh.elements(e, corners[i]), 1, -force_on_face / 12.0});
+                model.forces.push_back(
+                    {model.mesh.elements(e, middles[i]), 1, force_on_face / 3.0});
+            }
+        }
+    }
+    return model;
+}
+
+void quadratic_bricks(Recorder& recorder, const std::string& material, int n_elements, double kappa,
+                      double middle, double corner, double bound) {
+    recorder.set_source("CalculiX 2.20, C3D20R; converged value");
+    const io::CalculixModel model = quadratic_cook(n_elements, kappa);
+    const io::CalculixResult result = run_calculix(model);
+    const auto deflection = [&](double y) {
+        return result.displacements(node_at(model.mesh, {48.0, y, 0.0}), 1);
+    };
+    recorder.relative("v(48, 52), " + material, middle, deflection(52.0), bound);
+    recorder.relative("v(48, 60), " + material, corner, deflection(60.0), bound);
+}
+
+void quadratic_cook_cases(Recorder& recorder) {
+    quadratic_bricks(recorder, "nu = 1/3", 16, 1.0, 15.593, 14.4975, 2e-3);
+    quadratic_bricks(recorder, "kappa / mu = 1000", 24, 375.0, 13.174, 12.516, 1e-2);
+}
+
+/// The half seal's arm pushed in by 8 mm: nodes on the exact geometry, its cuts held, the cap free
+/// across.
+void half_seal(Recorder& recorder, double bulk_modulus_of_seal, double divisions) {
+    const MultiPatch<3> seal =
+        interpolate<3>(part<3>("half_seal", {{"divisions", divisions}}), 1, std::nullopt);
+    Problem problem = neo_hookean_problem(Kinematics::solid, shear_modulus, bulk_modulus_of_seal);
+    problem.supports = {make_support("cuts", 0.0, 0.0, 0.0), make_support("cap", -8.0, {}, {})};
+    compare(recorder, std::make_shared<const Space<3>>(seal), problem, 0.125);
+}
+
+Case half_seal_case(const std::string& name, double kappa, double divisions, bool is_long) {
+    return calculix_case(name, is_long,
+                         [=](Recorder& recorder) { half_seal(recorder, kappa, divisions); });
+}
+
 }  // namespace
 
 std::vector<Case> calculix_cases() {
     return {calculix_case("CalculiX, distorted block", false, distorted_block),
-            calculix_case("CalculiX, Cook's membrane", false, cook_slab)};
+            calculix_case("CalculiX, Cook's membrane", false, cook_slab),
+            calculix_case("CalculiX, Cook's membrane, quadratic", false, quadratic_cook_cases),
+            half_seal_case("CalculiX, half-seal, 128 elements", bulk_modulus, 1.0, false),
+            half_seal_case("CalculiX, half-seal, kappa = 20", bulk_modulus, 3.0, true),
+            half_seal_case("CalculiX, half-seal, kappa = 10", 10.0, 3.0, true)};
 }
 
 }  // namespace couture::verification
