@@ -93,6 +93,7 @@ std::vector<std::string> environment_of_one_thread() {
 
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     std::vector<char*> result;
+    result.reserve(texts.size() + 1);
     for (std::string& text : texts) {
         result.push_back(text.data());
     }
@@ -138,8 +139,10 @@ std::optional<int> wait_for(pid_t process, std::chrono::seconds time_limit) {
 }
 
 std::string end_of(const std::string& output) {
-    return output.size() <= shown_output ? output
-                                         : "..." + output.substr(output.size() - shown_output);
+    if (output.size() <= shown_output) {
+        return output;
+    }
+    return fmt::format("...{}", std::string_view(output).substr(output.size() - shown_output));
 }
 
 }  // namespace

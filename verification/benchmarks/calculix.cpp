@@ -49,9 +49,10 @@ void compare(Recorder& recorder, const SpacePtr<3>& space, const Problem& proble
     record_differences(recorder, "stresses", other.stresses, ours.stresses, difference_bound);
 }
 
-/// A cube of 4 x 3 x 5 elements whose nodes are moved by up to a seventh of an element; bent and
-/// pulled by prescribed displacements of one end and a traction on the top.
-void distorted_block(Recorder& recorder) {
+/// A cube of 4 x 3 x 5 elements whose nodes are moved by up to a seventh of an element, bent and
+/// pulled by prescribed displacements of one end and a traction on a side; or its mirror image,
+/// whose patch is left-handed.
+void distorted_block(Recorder& recorder, bool is_mirrored) {
     MultiPatch<3> block = refine<3>(part<3>("box"), 1, std::array<int, 3>{4, 3, 5});
     MatrixX nodes = block.patches[0].control_points();
     for (long i = 0; i < nodes.rows(); ++i) {
@@ -59,6 +60,9 @@ void distorted_block(Recorder& recorder) {
         nodes(i, 0) += 0.03 * std::sin(9.0 * x[1] + 5.0 * x[2]);
         nodes(i, 1) += 0.04 * std::sin(7.0 * x[0] - 8.0 * x[2]);
         nodes(i, 2) += 0.03 * std::cos(11.0 * x[0] + 6.0 * x[1]);
+    }
+    if (is_mirrored) {
+        nodes.col(1) *= -1.0;
     }
     block.patches[0] = Patch<3>(block.patches[0].space(), nodes);
     Problem problem = neo_hookean_problem(Kinematics::solid, shear_modulus, bulk_modulus);
@@ -158,7 +162,10 @@ Case half_seal_case(const std::string& name, double kappa, double divisions, boo
 }  // namespace
 
 std::vector<Case> calculix_cases() {
-    return {calculix_case("CalculiX, distorted block", false, distorted_block),
+    return {calculix_case("CalculiX, distorted block", false,
+                          [](Recorder& r) { distorted_block(r, false); }),
+            calculix_case("CalculiX, left-handed block", false,
+                          [](Recorder& r) { distorted_block(r, true); }),
             calculix_case("CalculiX, Cook's membrane", false, cook_slab),
             calculix_case("CalculiX, Cook's membrane, quadratic", false, quadratic_cook_cases),
             half_seal_case("CalculiX, half-seal, 128 elements", bulk_modulus, 1.0, false),
