@@ -156,7 +156,7 @@ CalculixResult parse_calculix_dat(const std::string& file, std::string_view text
         const std::size_t time = rest.rfind("time");
         if (time == std::string::npos) {
             words.fail("found {}; expected a heading that ends with the time",
-                       in_quotes(heading + " " + rest));
+                       in_quotes(fmt::format("{} {}", heading, rest)));
         }
         result.time = std::strtod(rest.c_str() + time + std::strlen("time"), nullptr);
         if (heading == "displacements") {
