@@ -25,6 +25,7 @@ iga::Remeshing<d> make_remeshing(const io::Deck& deck, const iga::MultiPatch<d>&
         remeshing.scaled_jacobian = asked.scaled_jacobian;
         remeshing.angle_deviation = asked.angle_deviation;
         remeshing.on_failure = asked.on_failure;
+        remeshing.transfer = asked.transfer;
         remeshing.max_remeshings = asked.max_remeshings;
         const auto features = std::make_shared<const meshing::BoundaryFeatures>(geometry);
         remeshing.mesh = [features](const iga::MultiPatch<3>& deformed) {

@@ -234,7 +234,7 @@ class SteppedRun {
     [[nodiscard]] std::optional<iga::Location<d>> place_of(std::size_t i_probe,
                                                            const iga::AcceptedStep<d>& step) const {
         const std::optional<iga::Location<d>>& location = locations_[i_probe];
-        if (!location || step.state.reference->is_undeformed()) {
+        if (!location || step.state.n_remeshings == 0) {
             return location;
         }
         Vector3 point = Vector3::Zero();

@@ -33,6 +33,7 @@ Json to_json_object(const iga::RemeshingReport& report) {
         return Json{{"before", before}, {"after", after}};
     };
     return {{"cause", report.cause},
+            {"transfer", report.transfer == iga::Transfer::gradient ? "gradient" : "displacement"},
             {"energy",
              {{"before", report.energy_before},
               {"transferred", report.energy_transferred},

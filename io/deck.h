@@ -47,6 +47,7 @@ struct RemeshingOptions {
     std::optional<double> scaled_jacobian;
     std::optional<double> angle_deviation;
     bool on_failure = false;
+    iga::Transfer transfer = iga::Transfer::displacement;
     int max_remeshings = 20;
 };
 

@@ -155,6 +155,10 @@ void read_remeshing(Section& section, Deck& deck) {
                                              {.low = 0.0, .high = 1.0, .is_open = true});
     options.angle_deviation = section.number("angle_deviation", dimensions::none, positive);
     options.on_failure = section.flag("on_failure").value_or(false);
+    if (section.choice("transfer", {"displacement", "gradient"}).value_or("displacement") ==
+        "gradient") {
+        options.transfer = iga::Transfer::gradient;
+    }
     options.max_remeshings =
         section.integer("max_remeshings", 1, max_steps).value_or(options.max_remeshings);
     if (!section.has("at") && !section.has("shape_ratio") && !section.has("scaled_jacobian") &&

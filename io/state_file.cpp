@@ -67,6 +67,7 @@ void for_numbers(Report& report, const Body& body) {
 
 Json to_json(const iga::RemeshingReport& report) {
     Json object = {{"cause", report.cause},
+                   {"carries_gradient", report.transfer == iga::Transfer::gradient},
                    {"n_iterations", report.n_iterations},
                    {"reactions_before", to_json(report.reactions_before)},
                    {"reactions_after", to_json(report.reactions_after)}};
@@ -77,6 +78,9 @@ Json to_json(const iga::RemeshingReport& report) {
 iga::RemeshingReport to_report(const Json& object) {
     iga::RemeshingReport report;
     report.cause = object.at("cause").get<std::string>();
+    if (object.at("carries_gradient").get<bool>()) {
+        report.transfer = iga::Transfer::gradient;
+    }
     report.n_iterations = object.at("n_iterations").get<int>();
     report.reactions_before = to_forces(object.at("reactions_before"));
     report.reactions_after = to_forces(object.at("reactions_after"));
@@ -209,8 +213,10 @@ iga::ReferencePtr<d> read_reference(const Source& source, hid_t root) {
     reference.displacement = read_matrix(source, group, "displacement");
     reference.gradient = read_matrix(source, group, "gradient");
     const Eigen::Index n = reference.space->n_dofs();
-    expect_shape(source.file, "reference/displacement", reference.displacement, n, d);
-    expect_shape(source.file, "reference/gradient", reference.gradient, n, 9);
+    if (!reference.is_undeformed()) {
+        expect_shape(source.file, "reference/displacement", reference.displacement, n, d);
+        expect_shape(source.file, "reference/gradient", reference.gradient, n, 9);
+    }
     return std::make_shared<const iga::ReferenceConfiguration<d>>(std::move(reference));
 }
 
@@ -226,7 +232,7 @@ void write_state(const std::filesystem::path& path, const iga::AcceptedStep<d>& 
         write_matrix(store, "displacement", step.state.displacement);
         write_matrix(store, "direction", step.state.direction);
         const iga::ReferenceConfiguration<d>& reference = *step.state.reference;
-        if (!reference.is_undeformed()) {
+        if (step.state.n_remeshings > 0) {
             const Handle group = make_group(store, "reference");
             write_bytes(group, "geometry", to_hdf5<d>(reference.space->geometry()));
             write_matrix(group, "displacement", reference.displacement);

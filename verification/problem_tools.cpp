@@ -4,9 +4,9 @@
 
 #include "iga/core/error.h"
 #include "iga/core/format.h"
-#include "iga/topology/locator.h"
 #include "iga/post/stress.h"
 #include "iga/spline/refine.h"
+#include "iga/topology/locator.h"
 #include "meshing/parts/parts.h"
 
 namespace couture::verification {
@@ -92,6 +92,28 @@ CaseResult<d> solve(const SpacePtr<d>& space, const Problem& problem,
     return solve_linear_static<d>(space, problem, options).cases.at(0);
 }
 
+Problem neo_hookean_problem(Kinematics kinematics, double shear_modulus, double bulk_modulus) {
+    Problem problem;
+    problem.kinematics = kinematics;
+    problem.materials.resize(1);
+    problem.materials[0].name = "rubber";
+    problem.materials[0].hyperelastic =
+        make_hyperelastic(StoredEnergy::neo_hookean, shear_modulus, bulk_modulus);
+    return problem;
+}
+
+template <int d>
+AcceptedStep<d> run_to_end(const SpacePtr<d>& space, const Problem& problem,
+                           const SteppingOptions& options) {
+    AcceptedStep<d> last;
+    const SteppingReport report = follow_loads<d>(
+        make_start<d>(space), problem, options, [&](const AcceptedStep<d>& step) { last = step; });
+    if (!report.finished) {
+        throw SolverError("{}", report.reason);
+    }
+    return last;
+}
+
 template <int d>
 VectorX displacement_at(const Field<d>& u, const Vector3& point) {
     const Location<d> place = locate(u.space->geometry(), point);
@@ -143,6 +165,8 @@ double geometry_error(const MultiPatch<d>& geometry, const std::string& set,
     template SpacePtr<d> make_space<d>(const MultiPatch<d>&, int, const std::array<int, d>&); \
     template SpacePtr<d> make_space<d>(const MultiPatch<d>&, int, int);                       \
     template CaseResult<d> solve<d>(const SpacePtr<d>&, const Problem&, std::optional<int>);  \
+    template AcceptedStep<d> run_to_end<d>(const SpacePtr<d>&, const Problem&,                \
+                                           const SteppingOptions&);                           \
     template VectorX displacement_at<d>(const Field<d>&, const Vector3&);                     \
     template Vector<6> stress_at<d>(const Problem&, const Field<d>&, const Vector3&);         \
     template double geometry_error<d>(const MultiPatch<d>&, const std::string&,               \

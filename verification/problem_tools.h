@@ -6,6 +6,7 @@
 
 #include "iga/mechanics/problem.h"
 #include "iga/solve/linear_static.h"
+#include "iga/solve/load_stepping.h"
 #include "iga/topology/multipatch.h"
 #include "iga/topology/space.h"
 
@@ -33,6 +34,17 @@ template <int d>
 template <int d>
 [[nodiscard]] iga::CaseResult<d> solve(const iga::SpacePtr<d>& space, const iga::Problem& problem,
                                        std::optional<int> n_gauss_points = {});
+
+/// A plane or solid body of `StoredEnergy::neo_hookean`, without supports and loads.
+[[nodiscard]] iga::Problem neo_hookean_problem(iga::Kinematics kinematics, double shear_modulus,
+                                               double bulk_modulus);
+/// The last state of a stepped run from the undeformed body.
+///
+/// @throws SolverError  if it does not reach its end
+template <int d>
+[[nodiscard]] iga::AcceptedStep<d> run_to_end(const iga::SpacePtr<d>& space,
+                                              const iga::Problem& problem,
+                                              const iga::SteppingOptions& options = {});
 
 /// Displacement at a point of the body. @throws GeometryError  if the point is outside
 template <int d>

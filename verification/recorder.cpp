@@ -48,6 +48,13 @@ void Recorder::failure(const std::string& message) {
     add(std::move(row));
 }
 
+void Recorder::skip(const std::string& reason) {
+    Row row;
+    row.quantity = "skipped";
+    row.skipped = reason;
+    add(std::move(row));
+}
+
 void Recorder::add(Row row) {
     const double now = timer_.seconds();
     row.seconds = now - last_time_;

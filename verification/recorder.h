@@ -24,6 +24,9 @@ struct Row {
     double seconds = 0.0;
     /// What was thrown instead of a number.
     std::string failure;
+    /// Why there is no number, where a case could not be tried on this machine; neither passed nor
+    /// failed.
+    std::string skipped;
 };
 
 /// Takes the rows of the cases as they are obtained.
@@ -45,6 +48,8 @@ class Recorder {
     void vanishing(const std::string& quantity, double obtained, double bound);
     /// The case could not be finished.
     void failure(const std::string& message);
+    /// The case can't be tried on this machine.
+    void skip(const std::string& reason);
 
     [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
 

@@ -7,11 +7,13 @@
 
 #include "iga/core/error.h"
 #include "verification/benchmarks/beams.h"
+#include "verification/benchmarks/calculix.h"
 #include "verification/benchmarks/cook.h"
 #include "verification/benchmarks/hyperelastic.h"
 #include "verification/benchmarks/kirsch.h"
 #include "verification/benchmarks/lame.h"
 #include "verification/benchmarks/nafems.h"
+#include "verification/benchmarks/remeshing.h"
 #include "verification/benchmarks/shells.h"
 #include "verification/geometry/known_shapes.h"
 #include "verification/manufactured/convergence.h"
@@ -33,7 +35,8 @@ std::vector<Case> all_cases() {
     std::vector<Case> cases;
     for (std::vector<Case> (*group)() :
          {known_shape_cases, patch_test_cases, convergence_cases, lame_cases, kirsch_cases,
-          nafems_cases, cook_cases, shell_cases, beam_cases, hyperelastic_cases}) {
+          nafems_cases, cook_cases, shell_cases, beam_cases, hyperelastic_cases, remeshing_cases,
+          calculix_cases}) {
         const std::vector<Case> more = group();
         cases.insert(cases.end(), more.begin(), more.end());
     }
@@ -41,8 +44,14 @@ std::vector<Case> all_cases() {
 }
 
 int VerificationReport::n_failed() const {
-    return static_cast<int>(
-        std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.passed; }));
+    return static_cast<int>(std::count_if(rows.begin(), rows.end(), [](const Row& row) {
+        return !row.passed && row.skipped.empty();
+    }));
+}
+
+int VerificationReport::n_skipped() const {
+    return static_cast<int>(std::count_if(rows.begin(), rows.end(),
+                                          [](const Row& row) { return !row.skipped.empty(); }));
 }
 
 VerificationReport run_verification(const VerificationOptions& options) {

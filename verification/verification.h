@@ -32,6 +32,7 @@ struct VerificationReport {
     std::vector<Row> rows;
     double seconds = 0.0;
     [[nodiscard]] int n_failed() const;
+    [[nodiscard]] int n_skipped() const;
 };
 
 /// Runs the cases. What a case throws becomes a row that failed.

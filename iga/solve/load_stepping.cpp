@@ -305,6 +305,7 @@ class Stepper {
             }
             TransferOptions options;
             options.n_gauss_points = options_.n_gauss_points;
+            options.transfer = remeshing_.transfer;
             TransferredState<d> moved = transfer_state(*state_.reference, problem_.kinematics,
                                                        state_.displacement, mesh, options);
             record.energy_before = energy_;
@@ -313,9 +314,15 @@ class Stepper {
             record.gradient_drift = moved.gradient_drift;
             record.min_det_F = moved.min_det_F;
             record.largest_gap = moved.largest_gap;
-            state_.displacement = moved.reference.displacement;
-            take_reference(
-                std::make_shared<const ReferenceConfiguration<d>>(std::move(moved.reference)));
+            record.transfer = moved.transfer;
+            if (moved.transfer != remeshing_.transfer) {
+                log::warn(fmt::format(
+                    "t = {:.6g}: the new mesh folds when it is moved back to the undeformed body; "
+                    "the deformation gradient is carried over, too",
+                    state_.t));
+            }
+            state_.displacement = moved.displacement;
+            take_reference(moved.reference);
         } catch (const Error& error) {
             return fail(error.what());
         }

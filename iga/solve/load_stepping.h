@@ -6,6 +6,7 @@
 #include "iga/assembly/reference_configuration.h"
 #include "iga/mechanics/problem.h"
 #include "iga/solve/newton.h"
+#include "iga/solve/state_transfer.h"
 #include "iga/topology/field.h"
 
 namespace couture::iga {
@@ -66,6 +67,8 @@ struct RemeshingReport {
     double t = 0.0;
     /// "time", "shape ratio 5.2 > 5", "Newton failed", ...
     std::string cause;
+    /// What was carried over: `gradient` also where that was the only way.
+    Transfer transfer = Transfer::displacement;
     /// Stored energy on the old mesh, on the new one with what was transferred, and there in
     /// equilibrium.
     double energy_before = 0.0;
@@ -83,7 +86,7 @@ struct RemeshingReport {
     double scaled_jacobian_after = 0.0;
     double angle_deviation_before = 0.0;
     double angle_deviation_after = 0.0;
-    /// |F_b - F| over |F - I| in L2, F_b the transferred deformation gradient and F that of the
+    /// |F_b - F| over |F - I| in L2, F_b the projected deformation gradient and F that of the
     /// transferred displacement.
     double gradient_drift = 0.0;
     double min_det_F = 1.0;
@@ -127,6 +130,7 @@ struct Remeshing {
     std::optional<double> angle_deviation;
     /// When Newton fails with the smallest step.
     bool on_failure = false;
+    Transfer transfer = Transfer::displacement;
     int max_remeshings = 20;
 };
 

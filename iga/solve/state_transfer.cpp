@@ -129,12 +129,12 @@ TransferredState<d> transfer_state(const ReferenceConfiguration<d>& old, Kinemat
     const OldBody<d> body(deformed_body(old, displacement), options.tolerance);
     const Field<d> old_displacement{old.space, displacement};
     const auto space = std::make_shared<const Space<d>>(mesh);
-    result.reference.space = space;
-    result.reference.displacement =
+    ReferenceConfiguration<d> deformed{space, {}, {}};
+    deformed.displacement =
         transfer_displacement<d>(old_displacement, body, *space, result.largest_gap);
 
     // F - I at the quadrature points: evaluated in the old mesh, and of the new displacement.
-    const Field<d> new_displacement{space, result.reference.displacement};
+    const Field<d> new_displacement{space, deformed.displacement};
     LinearForm<d> form;
     form.n_components = 9;
     std::vector<VectorX> gaps(space->n_patches());
@@ -162,19 +162,22 @@ TransferredState<d> transfer_state(const ReferenceConfiguration<d>& old, Kinemat
     const BlockMatrix mass = assemble(*space, scalar_form<d>(0.0, 1.0), options.n_gauss_points);
     const std::unique_ptr<LinearSolver> solver = make_linear_solver({});
     solver->factorize({mass, {}, {}});
-    static_cast<void>(solver->solve(rhs, result.reference.gradient));
+    static_cast<void>(solver->solve(rhs, deformed.gradient));
     for (const VectorX& of_patch : gaps) {
         result.largest_gap = std::max(result.largest_gap, of_patch.maxCoeff());
     }
 
-    result.min_det_F = std::numeric_limits<double>::infinity();
+    SmallestVolume<d> smallest;
+    smallest.det_F = std::numeric_limits<double>::infinity();
     double drift = 0.0;
     double size = 0.0;
+    // Of the mesh moved back.
+    bool is_folded = false;
     for (int p = 0; p < space->n_patches(); ++p) {
         const GeometryGrid<d> grid(mesh.patches[p], space->tensor(p),
                                    gauss_points<d>(space->tensor(p), options.n_gauss_points));
         FieldGrid<d> displacements(new_displacement, p, grid);
-        FieldGrid<d> gradients({space, result.reference.gradient}, p, grid);
+        FieldGrid<d> gradients({space, deformed.gradient}, p, grid);
         GeometryPlane<d> plane;
         for (int i = 0; i < grid.n_planes(); ++i) {
             grid.evaluate(i, plane);
@@ -187,17 +190,13 @@ TransferredState<d> transfer_state(const ReferenceConfiguration<d>& old, Kinemat
                     const double r = plane.x[3 * q];
                     H(2, 2) = r > 0.0 ? displacements.value(q)[0] / r : H(0, 0);
                 }
+                is_folded = is_folded || !((Matrix<3>::Identity() - H).determinant() > 0.0);
                 const Matrix<3> direct = from_deformed(H);
                 const VectorX row = gradients.value(q);
                 const Matrix<3> projected = Eigen::Map<const RowMajor3>(row.data());
                 const double det_F = 1.0 + volume_change(projected);
-                result.min_det_F = std::min(result.min_det_F, det_F);
-                if (!(det_F > 0.0)) {
-                    throw GeometryError(
-                        "transfer: the projected deformation gradient has det F_b = {:.3g} in "
-                        "patch {} at parameter {}; it must be positive: mesh again earlier or with "
-                        "finer elements",
-                        det_F, p, format_point(grid.parameter(i, q)));
+                if (!(det_F >= smallest.det_F)) {
+                    smallest = {det_F, p, grid.parameter(i, q)};
                 }
                 const double weight = plane.quadrature_weight[q] * std::abs(plane.determinant[q]);
                 drift += weight * (projected - direct).squaredNorm();
@@ -206,6 +205,21 @@ TransferredState<d> transfer_state(const ReferenceConfiguration<d>& old, Kinemat
         }
     }
     result.gradient_drift = size > 0.0 ? std::sqrt(drift / size) : 0.0;
+    result.min_det_F = smallest.det_F;
+    result.displacement = deformed.displacement;
+    result.transfer = is_folded ? Transfer::gradient : options.transfer;
+    if (result.transfer == Transfer::displacement) {
+        result.reference = make_reference<d>(deformed.undeformed());
+        return result;
+    }
+    if (!(smallest.det_F > 0.0)) {
+        throw GeometryError(
+            "transfer: the projected deformation gradient has det F_b = {:.3g} in patch {} at "
+            "parameter {}{}; it must be positive: mesh again earlier or with finer elements",
+            smallest.det_F, smallest.patch, format_point(smallest.xi),
+            is_folded ? ", and the new mesh folds when it is moved back" : "");
+    }
+    result.reference = std::make_shared<const ReferenceConfiguration<d>>(std::move(deformed));
     return result;
 }
 

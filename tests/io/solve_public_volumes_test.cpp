@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "iga/topology/locator.h"
 #include "iga/solve/linear_static.h"
+#include "iga/topology/locator.h"
 #include "io/spline_file.h"
 #include "tests/data_folder.h"
 

@@ -44,6 +44,23 @@ TEST_CASE("Recorder: rows carry case and source and are handed on at once", "[ve
     CHECK(seen[1].source.empty());
 }
 
+TEST_CASE("Recorder: what can't be tried is neither passed nor failed", "[verification]") {
+    Recorder recorder;
+    recorder.start("other program");
+    recorder.skip("it is not installed");
+    recorder.vanishing("inside", 0.0, 1e-12);
+    const VerificationReport report{recorder.rows(), 1.5};
+    CHECK_FALSE(recorder.rows()[0].passed);
+    CHECK(report.n_failed() == 0);
+    CHECK(report.n_skipped() == 1);
+    CHECK_THAT(table_line(recorder.rows()[0]),
+               Contains("other program") && Contains("skipped: it is not installed"));
+    CHECK(table_foot(report) ==
+          "2 rows, 0 failed, 1 skipped, 1.5 s (r: relative to the expected value)");
+    CHECK_THAT(to_json(report),
+               Contains("\"n_skipped\": 1") && Contains("\"skipped\": \"it is not installed\""));
+}
+
 TEST_CASE("table: a line says what was expected, obtained and whether it holds", "[verification]") {
     Recorder recorder;
     recorder.start("thick cylinder");

@@ -1,6 +1,7 @@
 #include "verification/verification.h"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <set>
 
 #include "iga/core/error.h"
@@ -14,9 +15,15 @@ using Catch::Matchers::StartsWith;
 namespace {
 
 void check_all(const VerificationReport& report) {
+    // Continuous integration has every program that results are compared with.
+    const bool may_skip = std::getenv("CI") == nullptr;
     for (const Row& row : report.rows) {
         INFO(table_line(row));
-        CHECK(row.passed);
+        if (may_skip && !row.skipped.empty()) {
+            WARN(table_line(row));
+        } else {
+            CHECK(row.passed);
+        }
     }
     CHECK(report.n_failed() == 0);
 }
@@ -40,7 +47,8 @@ TEST_CASE("run_verification: a filter that fits nothing lists the cases", "[veri
     options.filter = "no such case";
     CHECK_THROWS_WITH(run_verification(options),
                       StartsWith("verify: no case is named like 'no such case'; there are: ") &&
-                          Contains("'thick cylinder, plane strain', ") && Contains("'NAFEMS LE10'"));
+                          Contains("'thick cylinder, plane strain', ") &&
+                          Contains("'NAFEMS LE10'"));
 }
 
 TEST_CASE("run_verification: names of cases are unique", "[verification]") {

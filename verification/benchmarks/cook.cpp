@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "iga/core/error.h"
 #include "verification/problem_tools.h"
 
 namespace couture::verification {
@@ -105,13 +106,53 @@ void lambda_over_G_2e7(Recorder& recorder) {
     nearly_incompressible(recorder, 0.75e7, graded_space(8, 32, 0), 16.4530, 17.267, 5e-3, options);
 }
 
+/// A mesh of `graded_space` and how far from the converged value its deflections may be.
+struct Mesh {
+    int degree;
+    int n_elements;
+    int n_levels;
+    double bound;
+};
+
+/// Finite strain in plane strain: a dead shear of 1/16 per undeformed area turns the loaded side by
+/// more than half a radian.
+void finite_strain(Recorder& recorder, double bulk_modulus, double middle, double corner,
+                   const std::vector<Mesh>& meshes) {
+    recorder.set_source("[Cook74] with neo-Hookean material; converged value");
+    Problem problem = neo_hookean_problem(Kinematics::plane_strain, shear_modulus, bulk_modulus);
+    problem.supports = {make_support("clamped", 0.0, 0.0)};
+    problem.tractions = {shear(1.0)};
+    for (const Mesh& mesh : meshes) {
+        const SpacePtr<2> space = graded_space(mesh.degree, mesh.n_elements, mesh.n_levels);
+        const Field<2> u{space, run_to_end<2>(space, problem).state.displacement};
+        const std::string where = fmt::format("p={}, n={}", mesh.degree, mesh.n_elements);
+        recorder.relative("v(48, 52), " + where, middle,
+                          displacement_at<2>(u, {48.0, 52.0, 0.0})[1], mesh.bound);
+        recorder.relative("v(48, 60), " + where, corner,
+                          displacement_at<2>(u, {48.0, 60.0, 0.0})[1], mesh.bound);
+    }
+}
+
+void finite_compressible(Recorder& recorder) {
+    finite_strain(recorder, 1.0, 15.593, 14.4975,
+                  {{1, 64, 0, 5e-3}, {2, 32, 0, 1e-3}, {3, 32, 0, 5e-4}});
+}
+
+/// Plain displacements would lock: the change of volume is projected, the default for this ratio.
+void finite_nearly_incompressible(Recorder& recorder) {
+    finite_strain(recorder, 375.0, 13.174, 12.516,
+                  {{1, 32, 0, 1e-2}, {2, 32, 0, 5e-3}, {3, 16, 0, 5e-3}});
+}
+
 }  // namespace
 
 std::vector<Case> cook_cases() {
     return {{"Cook, plane stress", false, plane_stress},
             {"Cook, nu = 0.4999", false, nu_04999},
             {"Cook, lambda / G = 2e4", false, lambda_over_G_2e4},
-            {"Cook, lambda / G = 2e7", false, lambda_over_G_2e7}};
+            {"Cook, lambda / G = 2e7", false, lambda_over_G_2e7},
+            {"Cook, finite strain, nu = 1/3", false, finite_compressible},
+            {"Cook, finite strain, kappa / mu = 1000", false, finite_nearly_incompressible}};
 }
 
 }  // namespace couture::verification

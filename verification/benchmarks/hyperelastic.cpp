@@ -1,7 +1,11 @@
 #include "verification/benchmarks/hyperelastic.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "iga/core/error.h"
-#include "iga/solve/load_stepping.h"
 #include "verification/problem_tools.h"
 
 namespace couture::verification {
@@ -16,30 +20,13 @@ constexpr double bulk_modulus = 20.0;
 constexpr double homogeneous_bound = 1e-8;
 constexpr double inflation_bound = 1e-6;
 constexpr double stress_bound = 1e-3;
+constexpr double derivative_bound = 1e-8;
 
 constexpr const char* closed_form = "closed form, W = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2";
 constexpr const char* radial_equation = "radial equation, Runge-Kutta of order 4";
 
 Problem neo_hookean(Kinematics kinematics, double mu = shear_modulus, double kappa = bulk_modulus) {
-    Problem problem;
-    problem.kinematics = kinematics;
-    problem.materials.resize(1);
-    problem.materials[0].name = "rubber";
-    problem.materials[0].hyperelastic = make_hyperelastic(StoredEnergy::neo_hookean, mu, kappa);
-    return problem;
-}
-
-/// The last state of a run, which must reach its end.
-template <int d>
-AcceptedStep<d> run_to_end(const SpacePtr<d>& space, const Problem& problem,
-                           const SteppingOptions& options = {}) {
-    AcceptedStep<d> last;
-    const SteppingReport report = follow_loads<d>(
-        make_start<d>(space), problem, options, [&](const AcceptedStep<d>& step) { last = step; });
-    if (!report.finished) {
-        throw SolverError("{}", report.reason);
-    }
-    return last;
+    return neo_hookean_problem(kinematics, mu, kappa);
 }
 
 /// Cauchy stress at a parameter of patch 0.
@@ -178,10 +165,90 @@ void dead_load_tube(Recorder& recorder) {
                       4.0 + displacement_at<2>(u, Vector3(4.0, 0.0, 0.0))[0], 1e-5);
 }
 
+/// Deformation gradients with stretches from 0.15 to 3, volumes down to a hundredth, and their
+/// smallest stretch.
+struct Deformation {
+    Matrix<3> H;
+    double smallest_stretch;
+};
+
+std::vector<Deformation> random_deformations() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> component(-1.0, 1.0);
+    std::uniform_real_distribution<double> log_stretch(std::log(0.15), std::log(3.0));
+    const auto rotation = [&] {
+        return Eigen::Quaterniond(component(random), component(random), component(random),
+                                  component(random))
+            .normalized()
+            .toRotationMatrix();
+    };
+    std::vector<Deformation> result;
+    for (int i = 0; i < 200; ++i) {
+        Vector3 stretches;
+        for (double& stretch : stretches) {
+            stretch = std::exp(log_stretch(random));
+        }
+        const Matrix<3> R = rotation();
+        const Matrix<3> F = R * stretches.asDiagonal() * rotation();
+        result.push_back({F - Matrix<3>::Identity(), stretches.minCoeff()});
+    }
+    return result;
+}
+
+/// Derivative of f by each entry (i, J) of H, by central differences of order 4: column 3 i + J.
+/// The step is small against the smallest stretch.
+template <typename Values>
+MatrixX differences(const Deformation& at, const Values& f) {
+    const double step = 1e-3 * at.smallest_stretch;
+    MatrixX result(f(at.H).size(), 9);
+    for (int i = 0; i < 3; ++i) {
+        for (int J = 0; J < 3; ++J) {
+            const auto moved = [&](double steps) -> VectorX {
+                Matrix<3> H = at.H;
+                H(i, J) += steps * step;
+                return f(H);
+            };
+            result.col(3 * i + J) =
+                (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * step);
+        }
+    }
+    return result;
+}
+
+void derivatives(Recorder& recorder) {
+    recorder.set_source("central differences of order 4, 200 random F");
+    const std::vector<Deformation> deformations = random_deformations();
+    const std::vector<std::pair<std::string, StoredEnergy>> energies = {
+        {"neo_hookean", StoredEnergy::neo_hookean},
+        {"neo_hookean_logarithmic", StoredEnergy::neo_hookean_logarithmic},
+        {"saint_venant_kirchhoff", StoredEnergy::saint_venant_kirchhoff}};
+    for (const auto& [name, energy] : energies) {
+        const Hyperelastic material = make_hyperelastic(energy, shear_modulus, bulk_modulus);
+        double of_stress = 0.0;
+        double of_tangent = 0.0;
+        for (const Deformation& at : deformations) {
+            const auto stress = [&](const Matrix<3>& H) -> VectorX {
+                return piola_stress(material, H).reshaped<Eigen::RowMajor>();
+            };
+            const auto stored = [&](const Matrix<3>& H) -> VectorX {
+                return VectorX::Constant(1, stored_energy(material, H));
+            };
+            const VectorX P = stress(at.H);
+            const Matrix<9> A = piola_tangent(material, at.H);
+            of_stress =
+                std::max(of_stress, (differences(at, stored).transpose() - P).norm() / P.norm());
+            of_tangent = std::max(of_tangent, (differences(at, stress) - A).norm() / A.norm());
+        }
+        recorder.vanishing("stress and energy, " + name, of_stress, derivative_bound);
+        recorder.vanishing("tangent and stress, " + name, of_tangent, derivative_bound);
+    }
+}
+
 }  // namespace
 
 std::vector<Case> hyperelastic_cases() {
-    return {{"neo-Hookean, homogeneous", false, homogeneous_states},
+    return {{"hyperelastic, derivatives", false, derivatives},
+            {"neo-Hookean, homogeneous", false, homogeneous_states},
             {"neo-Hookean, simple shear", false, simple_shear},
             {"neo-Hookean, inflated tube", false, inflated_tube},
             {"neo-Hookean, inflated sphere", false, inflated_sphere},

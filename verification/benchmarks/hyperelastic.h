@@ -4,7 +4,8 @@
 
 namespace couture::verification {
 
-/// Homogeneous states and inflated tubes and spheres of compressible neo-Hookean material.
+/// Stresses and tangents against differences; homogeneous states and inflated tubes and spheres of
+/// compressible neo-Hookean material.
 [[nodiscard]] std::vector<Case> hyperelastic_cases();
 
 }  // namespace couture::verification

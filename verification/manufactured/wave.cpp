@@ -14,8 +14,29 @@ constexpr double youngs_modulus = 10.0;
 constexpr double poissons_ratio = 0.3;
 constexpr double conductivity = 2.0;
 
+constexpr double shear_modulus = 3.0;
+constexpr double bulk_modulus = 20.0;
+
 double argument(const PlaneWave& wave, const Vector3& x) {
     return wave.direction.dot(x) + wave.phase;
+}
+
+/// Gives a problem the body force, and the waves' first components on the set "outer".
+void drive(Problem& problem, const WaveSolution& solution, int n_components,
+           const std::function<Vector3(const Vector3& x)>& load) {
+    Support support;
+    support.on = "outer";
+    BodyForce force;
+    for (int a = 0; a < 3; ++a) {
+        force.components[a] = [load, a](const Vector3& x, double) { return load(x)[a]; };
+        if (a < n_components) {
+            support.components[a] = [solution, a](const Vector3& x, double) {
+                return solution.value(x)[a];
+            };
+        }
+    }
+    problem.supports = {support};
+    problem.body_forces = {force};
 }
 
 }  // namespace
@@ -71,19 +92,27 @@ Problem wave_problem(const WaveSolution& solution, Physics physics) {
     }
     problem.materials = {make_isotropic("solid", youngs_modulus, poissons_ratio)};
     problem.materials[0].conductivity = conductivity;
-    Support support;
-    support.on = "outer";
-    BodyForce force;
-    for (int a = 0; a < 3; ++a) {
-        force.components[a] = [load, a](const Vector3& x, double) { return load(x)[a]; };
-        if (a < (physics == Physics::poisson ? 1 : d)) {
-            support.components[a] = [solution, a](const Vector3& x, double) {
-                return solution.value(x)[a];
-            };
+    drive(problem, solution, physics == Physics::poisson ? 1 : d, load);
+    return problem;
+}
+
+template <int d>
+Problem neo_hookean_wave_problem(const WaveSolution& solution) {
+    Problem problem = neo_hookean_problem(d == 2 ? Kinematics::plane_strain : Kinematics::solid,
+                                          shear_modulus, bulk_modulus);
+    const Hyperelastic material = *problem.materials[0].hyperelastic;
+    drive(problem, solution, d, [=](const Vector3& x) -> Vector3 {
+        const Matrix<9> A = piola_tangent(material, solution.gradient(x));
+        Vector3 sum = Vector3::Zero();
+        for (const PlaneWave& wave : solution.waves) {
+            // Entry 3 k + L of A's columns meets amplitude_k direction_L.
+            const Matrix<3> outer = wave.direction * wave.amplitude.transpose();
+            const Vector<9> dP = A * outer.reshaped();
+            sum -= dP.reshaped<Eigen::RowMajor>(3, 3) * wave.direction *
+                   solution.profile(argument(wave, x), 2);
         }
-    }
-    problem.supports = {support};
-    problem.body_forces = {force};
+        return sum;
+    });
     return problem;
 }
 
@@ -111,5 +140,7 @@ template ExactSolution<2> WaveSolution::exact<2>(int) const;
 template ExactSolution<3> WaveSolution::exact<3>(int) const;
 template Problem wave_problem<2>(const WaveSolution&, Physics);
 template Problem wave_problem<3>(const WaveSolution&, Physics);
+template Problem neo_hookean_wave_problem<2>(const WaveSolution&);
+template Problem neo_hookean_wave_problem<3>(const WaveSolution&);
 
 }  // namespace couture::verification

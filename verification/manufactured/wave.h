@@ -33,6 +33,11 @@ struct WaveSolution {
 template <int d>
 [[nodiscard]] iga::Problem wave_problem(const WaveSolution& solution, iga::Physics physics);
 
+/// The same for the body of `StoredEnergy::neo_hookean` with mu = 3, kappa = 20: the body force per
+/// undeformed volume is -Div P = -A_iJkL u_k,LJ with the tangent A = dP/dF at the waves' gradient.
+template <int d>
+[[nodiscard]] iga::Problem neo_hookean_wave_problem(const WaveSolution& solution);
+
 /// Polynomial (1 + s)^degree.
 [[nodiscard]] Profile power(int degree);
 [[nodiscard]] Profile sine();

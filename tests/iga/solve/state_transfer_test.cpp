@@ -1,5 +1,6 @@
 #include "iga/solve/state_transfer.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <random>
@@ -93,26 +94,29 @@ TEST_CASE("transfer_state: an affine deformation is carried over exactly", "[sol
         at_control_points<3>(*space, [&](const VectorX& x) -> VectorX { return H * x; });
     const auto old = make_reference<3>(space);
     const MultiPatch<3> body = deformed_body<3>(*old, u);
+    const Transfer transfer = GENERATE(Transfer::displacement, Transfer::gradient);
     const TransferredState<3> moved =
-        transfer_state<3>(*old, Kinematics::solid, u, stirred<3>(body, 0.04));
+        transfer_state<3>(*old, Kinematics::solid, u, stirred<3>(body, 0.04),
+                          {.n_gauss_points = {}, .transfer = transfer});
+    CHECK(moved.transfer == transfer);
     CHECK(moved.gradient_drift < 1e-12);
     CHECK(moved.largest_gap < 1e-12);
     CHECK(moved.min_det_F == Approx((Matrix<3>::Identity() + H).determinant()).epsilon(1e-12));
-    // Displacement over the deformed body: U = H (I + H)^-1 x.
-    const Matrix<3> over_deformed = H * (Matrix<3>::Identity() + H).inverse();
-    const Field<3> U{moved.reference.space, moved.reference.displacement};
+    CHECK(moved.reference->is_undeformed() == (transfer == Transfer::displacement));
     const Vector3 xi(0.21, 0.62, 0.44);
-    const VectorX x = moved.reference.space->geometry().patches[0].point(xi);
-    CHECK((U.value(0, xi) - over_deformed * x).norm() < 1e-12);
-    const Field<3> F{moved.reference.space, moved.reference.gradient};
-    for (int i = 0; i < 3; ++i) {
-        for (int J = 0; J < 3; ++J) {
-            CHECK(F.value(0, xi)[3 * i + J] == Approx(H(i, J)).margin(1e-12));
-        }
-    }
-    // The undeformed body in the new patches.
-    const SpacePtr<3> undeformed = moved.reference.undeformed();
+    CHECK((total_displacement_gradient<3>(*moved.reference, Kinematics::solid, moved.displacement,
+                                          0, xi) -
+           H)
+              .norm() < 1e-12);
+    // The undeformed body in the new patches, and the place that they came from.
+    const SpacePtr<3> undeformed = moved.reference->undeformed();
     CHECK(volume(undeformed->geometry()) == Approx(2.0).epsilon(1e-12));
+    const VectorX X = undeformed->geometry().patches[0].point(xi);
+    const Field<3> U{undeformed, moved.displacement};
+    CHECK((U.value(0, xi) - H * X).norm() < 1e-12);
+    const MultiPatch<3> again = deformed_body<3>(*moved.reference, moved.displacement);
+    CHECK((again.patches[0].control_points() - stirred<3>(body, 0.04).patches[0].control_points())
+              .norm() < 1e-12);
 }
 
 TEST_CASE("transfer_state: rational patches keep affine deformations", "[solve]") {
@@ -127,8 +131,33 @@ TEST_CASE("transfer_state: rational patches keep affine deformations", "[solve]"
     const TransferredState<2> moved =
         transfer_state<2>(*old, Kinematics::plane_strain, u, stirred<2>(body, 0.02));
     CHECK(moved.gradient_drift < 1e-11);
-    CHECK(volume(moved.reference.undeformed()->geometry()) ==
+    CHECK(volume(moved.reference->undeformed()->geometry()) ==
           Approx(0.75 * 3.14159265358979).epsilon(1e-11));
+}
+
+TEST_CASE("transfer_state: where the new mesh would fold moved back, the gradient is carried over",
+          "[solve]") {
+    // A square whose inside is turned: the farther in, the more.
+    const auto square = [](int n) {
+        return with_sides<2>(make_box<2>(Vector2(2.0, 2.0)), 1, {n, n});
+    };
+    const double turn = 3.0;
+    const auto space = std::make_shared<const Space<2>>(square(48));
+    const MatrixX u = at_control_points<2>(*space, [&](const VectorX& x) -> VectorX {
+        const Vector2 from_middle = x - Vector2(1.0, 1.0);
+        const double inside = std::max(0.0, 1.0 - from_middle.squaredNorm());
+        return Eigen::Rotation2Dd(turn * inside * inside) * from_middle - from_middle;
+    });
+    const auto old = make_reference<2>(space);
+    const TransferredState<2> fine =
+        transfer_state<2>(*old, Kinematics::plane_strain, u, square(24));
+    CHECK(fine.transfer == Transfer::displacement);
+    const TransferredState<2> coarse =
+        transfer_state<2>(*old, Kinematics::plane_strain, u, square(4));
+    CHECK(coarse.transfer == Transfer::gradient);
+    CHECK_FALSE(coarse.reference->is_undeformed());
+    CHECK(coarse.min_det_F > 0.0);
+    CHECK(coarse.gradient_drift > fine.gradient_drift);
 }
 
 TEST_CASE("transfer_state: a point outside the old mesh is named", "[solve]") {
@@ -150,6 +179,7 @@ TEST_CASE("follow_loads: a homogeneous state goes on through remeshings to its c
     const Problem problem = stretched_block(2.0);
     Remeshing<3> remeshing;
     remeshing.times = {0.25, 0.5};
+    remeshing.transfer = GENERATE(Transfer::displacement, Transfer::gradient);
     int n_meshes = 0;
     remeshing.mesh = [&](const MultiPatch<3>& body) { return stirred<3>(body, 0.03 * ++n_meshes); };
     std::vector<AcceptedStep<3>> steps;
@@ -181,6 +211,7 @@ TEST_CASE("follow_loads: a run goes on from a remeshed state as if it had not st
     const Problem problem = stretched_block(1.5);
     Remeshing<3> remeshing;
     remeshing.times = {0.5};
+    remeshing.transfer = GENERATE(Transfer::displacement, Transfer::gradient);
     remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, 0.05); };
     std::vector<AcceptedStep<3>> steps;
     const auto keep = [&](const AcceptedStep<3>& step) { steps.push_back(step); };
