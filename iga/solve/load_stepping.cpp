@@ -16,6 +16,8 @@ namespace {
 /// Steps that took at most so many iterations are followed by larger ones.
 constexpr int quick_iterations = 5;
 constexpr double growth = 1.5;
+/// Of the missing forces on a new mesh, that are taken off at once.
+constexpr double smallest_relaxation = 1e-3;
 /// Times are equal up to the rounding of a sum of steps, relative to the end.
 constexpr double same_time = 1e-12;
 
@@ -283,6 +285,35 @@ class Stepper {
         return {};
     }
 
+    /// Equilibrium from a state that is none, where the body was moved to last: what it lacks acts as
+    /// a load that is taken off, all at once or, where Newton fails, in steps.
+    NewtonReport relax(const LoadState<d>& loads, int& n_iterations) {
+        const MatrixX missing = to_displacement(loads.constraints, body_->residual());
+        double left = 1.0;
+        double step = 1.0;
+        for (;;) {
+            const double next = std::max(left - step, 0.0);
+            LoadState<d> partial = loads;
+            partial.dead_loads += next * missing;
+            const NewtonReport newton =
+                solve_newton(*body_, partial, options_.newton, state_.displacement);
+            n_iterations += newton.iterations;
+            log::detail(fmt::format("relaxation to {:.3g} of the missing forces: {}", next,
+                                    newton.converged ? "done" : newton.reason));
+            if (newton.converged && next == 0.0) {
+                return newton;
+            }
+            if (newton.converged) {
+                left = next;
+                step *= growth;
+            } else if (step < smallest_relaxation) {
+                return newton;
+            } else {
+                step *= 0.5;
+            }
+        }
+    }
+
     /// Goes over to a new mesh, in equilibrium at the same time; false if that failed.
     bool remesh(const std::string& cause) {
         RemeshingReport record;
@@ -332,9 +363,8 @@ class Stepper {
         }
         record.energy_transferred = body_->energy();
         AcceptedStep<d> accepted;
-        accepted.newton = solve_newton(*body_, loads, options_.newton, state_.displacement);
-        report_.n_iterations += accepted.newton.iterations;
-        record.n_iterations = accepted.newton.iterations;
+        accepted.newton = relax(loads, record.n_iterations);
+        report_.n_iterations += record.n_iterations;
         if (!accepted.newton.converged) {
             return fail("no equilibrium on the new mesh: " + accepted.newton.reason);
         }

@@ -193,6 +193,46 @@ struct Finder {
         return largest;
     }
 
+    /// The body fills more than a half around the edge somewhere: from it, one side runs out of the
+    /// half space that the other one bounds.
+    [[nodiscard]] bool is_reentrant(const Edge& edge) const {
+        if (edge.uses.size() != 2 || is_inner[edge.uses[0].side] || is_inner[edge.uses[1].side]) {
+            return false;
+        }
+        std::array<std::vector<Vector3>, 2> normals;
+        std::array<std::vector<Vector3>, 2> inwards;
+        for (int use = 0; use < 2; ++use) {
+            const Entity& entity = edge.uses[use].edge;
+            const Entity& side = sides[edge.uses[use].side];
+            const iga::Patch<3>& patch = geometry.patches[entity.patch];
+            int across = 0;
+            while (entity.position[across] == End::free ||
+                   across == iga::side_direction(side.side())) {
+                ++across;
+            }
+            const double sign = entity.position[across] == End::low ? 1.0 : -1.0;
+            const iga::KnotVector line =
+                iga::entity_space<3, 1>(patch.space(), entity.position).knots[0];
+            for (const double at : line.breakpoints()) {
+                const Vector3 xi =
+                    iga::entity_parameter<3, 1>(patch.space(), entity.position, Vector<1>(at));
+                normals[use].push_back(
+                    outward_normal(geometry, side, xi, orientations[side.patch]).normalized());
+                inwards[use].push_back(sign * Vector3(patch.jacobian(xi).col(across)).normalized());
+            }
+            if (edge.uses[use].is_reversed) {
+                std::reverse(normals[use].begin(), normals[use].end());
+                std::reverse(inwards[use].begin(), inwards[use].end());
+            }
+        }
+        for (std::size_t i = 0; i < normals[0].size(); ++i) {
+            if (normals[0][i].dot(inwards[1][i]) > std::sin(feature_angle)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
     /// Tangent of an edge at its first or last control point in the order of the key, inwards.
     [[nodiscard]] Vector3 tangent(const Edge& edge, bool at_last) const {
         const EdgeUse& use = edge.uses[0];
@@ -221,6 +261,26 @@ std::vector<std::vector<Member>> grouped(const std::vector<Member>& members, Cla
         groups[group_of[i]].push_back(members[i]);
     }
     return groups;
+}
+
+/// Numbers of the functions on an element.
+std::vector<int> element_dofs(const iga::TensorSpace<3>& space, const std::vector<int>& global,
+                              const std::array<int, 3>& element) {
+    std::array<int, 3> first;
+    std::array<int, 3> degree;
+    for (int k = 0; k < 3; ++k) {
+        degree[k] = space.knots[k].degree();
+        first[k] = space.knots[k].span_of_element(element[k]) - degree[k];
+    }
+    std::vector<int> result;
+    for (int c = 0; c <= degree[2]; ++c) {
+        for (int b = 0; b <= degree[1]; ++b) {
+            for (int a = 0; a <= degree[0]; ++a) {
+                result.push_back(global[space.index({first[0] + a, first[1] + b, first[2] + c})]);
+            }
+        }
+    }
+    return result;
 }
 
 }  // namespace
@@ -275,6 +335,17 @@ BoundaryFeatures::BoundaryFeatures(const MultiPatch<3>& initial, double feature_
         features.push_back(&edge);
         feature_edges.push_back(edge.uses[0].edge);
     }
+    find_near_reentrant(initial, [&] {
+        std::vector<bool> on_edge(dofs_.n_dofs, false);
+        for (const Edge* edge : features) {
+            if (finder.is_reentrant(*edge)) {
+                for (const int dof : finder.dofs_on(edge->uses[0].edge)) {
+                    on_edge[dof] = true;
+                }
+            }
+        }
+        return on_edge;
+    }());
     std::vector<int> face_of;
     faces_ = grouped(finder.sides, side_classes, face_of);
     for (std::size_t i = 0; i < finder.sides.size(); ++i) {
@@ -302,6 +373,24 @@ BoundaryFeatures::BoundaryFeatures(const MultiPatch<3>& initial, double feature_
     set(finder.fixed_dofs, Freedom::fixed, -1);
     for (const iga::CollapsedEntity<3>& collapsed : iga::collapsed_entities(initial)) {
         set(finder.dofs_on(collapsed.entity), Freedom::fixed, -1);
+    }
+}
+
+void BoundaryFeatures::find_near_reentrant(const MultiPatch<3>& geometry,
+                                           const std::vector<bool>& on_edge) {
+    near_reentrant_.assign(dofs_.n_dofs, false);
+    for (int p = 0; p < geometry.n_patches(); ++p) {
+        const iga::TensorSpace<3>& space = geometry.patches[p].space();
+        const std::array<int, 3> n = space.n_elements();
+        for (int e = 0; e < n[0] * n[1] * n[2]; ++e) {
+            const std::array<int, 3> at = {e % n[0], e / n[0] % n[1], e / (n[0] * n[1])};
+            const std::vector<int> dofs = element_dofs(space, dofs_.global[p], at);
+            if (std::any_of(dofs.begin(), dofs.end(), [&](int i) { return on_edge[i]; })) {
+                for (const int dof : dofs) {
+                    near_reentrant_[dof] = true;
+                }
+            }
+        }
     }
 }
 

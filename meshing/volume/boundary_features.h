@@ -49,6 +49,9 @@ class BoundaryFeatures {
     }
     /// Numbers of the control points at corners, increasing.
     [[nodiscard]] const std::vector<int>& corners() const { return corners_; }
+    /// Control points of elements at re-entrant feature edges, those around which the body fills
+    /// more than a half: by number.
+    [[nodiscard]] bool is_near_reentrant_edge(int dof) const { return near_reentrant_[dof]; }
     /// +1, or -1 for a left-handed patch.
     [[nodiscard]] int orientation(int patch) const { return orientations_[patch]; }
     /// Numbers of the control points on an entity, first free direction fastest.
@@ -56,6 +59,8 @@ class BoundaryFeatures {
                                            const iga::PatchEntity<3>& entity) const;
 
   private:
+    void find_near_reentrant(const iga::MultiPatch<3>& geometry, const std::vector<bool>& on_edge);
+
     std::string signature_;
     iga::DofMap dofs_;
     std::vector<Freedom> freedom_;
@@ -63,6 +68,7 @@ class BoundaryFeatures {
     std::vector<std::vector<iga::PatchEntity<3>>> faces_;
     std::vector<std::vector<iga::PatchEntity<3>>> curves_;
     std::vector<int> corners_;
+    std::vector<bool> near_reentrant_;
     std::vector<int> orientations_;
 };
 

@@ -138,8 +138,10 @@ class Minimizer {
     [[nodiscard]] TangentFrames frames(bool holds_curved) const {
         TangentFrames result = slide_.frames(points_);
         for (int i = 0; i < points_.cols(); ++i) {
-            if (features_.freedom(i) != Freedom::interior &&
-                (!options_.slide_boundary || (holds_curved && slide_.is_curved(i)))) {
+            if (options_.hold_reentrant_edges && features_.is_near_reentrant_edge(i)) {
+                result.set(i, Freedom::fixed, Vector3::Zero());
+            } else if (features_.freedom(i) != Freedom::interior &&
+                       (!options_.slide_boundary || (holds_curved && slide_.is_curved(i)))) {
                 result.set(i, Freedom::fixed, Vector3::Zero());
             }
         }

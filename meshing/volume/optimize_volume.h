@@ -13,6 +13,9 @@ struct VolumeOptimizationOptions {
     double tolerance = 5e-3;
     /// False: the boundary stays as it is.
     bool slide_boundary = true;
+    /// The elements at re-entrant edges stay as they are: deformations are singular there, and a
+    /// field on elements that moved there could not be carried over.
+    bool hold_reentrant_edges = true;
     /// Largest distance that a curved boundary may move away from the old one, in parts of the
     /// body's size: rounds that go farther are done again with shorter steps.
     double boundary_tolerance = 0.01;
