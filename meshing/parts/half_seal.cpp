@@ -19,7 +19,10 @@ constexpr int arm = n_ring_cuboids;
 
 /// Elements at one division, per cut and direction.
 constexpr int n_radial = 2;
-constexpr std::array<int, 3> n_around = {8, 3, 8};
+constexpr std::array<int, 3> n_around = {6, 3, 6};
+/// Beside the arm, elements around are larger at its sides and at the cuts by this part, and
+/// smaller in the middle, where the ring folds when the arm is pushed in.
+constexpr double grading = 0.3;
 constexpr std::array<int, 3> n_along_z = {1, 2, 1};
 constexpr int n_along_arm = 4;
 
@@ -81,6 +84,19 @@ void add_sets(iga::MultiPatch<3>& seal, const PartValues& values) {
     }
 }
 
+/// The breakpoints moved towards the middle.
+iga::KnotVector graded(const iga::KnotVector& knots) {
+    std::vector<double> moved;
+    for (const double at : knots.knots()) {
+        const double u = (at - knots.front()) / (knots.back() - knots.front());
+        const double v =
+            u + grading / (2.0 * std::numbers::pi) * std::sin(2.0 * std::numbers::pi * u);
+        const bool is_end = at == knots.front() || at == knots.back();
+        moved.push_back(is_end ? at : knots.front() + v * (knots.back() - knots.front()));
+    }
+    return {knots.degree(), std::move(moved)};
+}
+
 void divide(iga::MultiPatch<3>& seal, int divisions) {
     for (int p = 0; p < seal.n_patches(); ++p) {
         const std::array<int, 3> n_elements =
@@ -90,6 +106,9 @@ void divide(iga::MultiPatch<3>& seal, int divisions) {
         for (int k = 0; k < 3; ++k) {
             iga::KnotVector& knots = space.knots[k];
             knots = iga::refine(knots, knots.degree(), divisions * n_elements[k]).knots;
+            if (k == 1 && p != arm && p % 3 != 1) {
+                knots = graded(knots);
+            }
         }
         seal.patches[p] = iga::refine_to(seal.patches[p], space);
     }
@@ -123,7 +142,7 @@ std::vector<PartDefinition> half_seal_parts() {
                {"arm_height", 13.0, 10.0, 16.0, "the arm's size along z, mm"},
                {"arm_length", 65.0, 50.0, 80.0, "from the axis to the cap, mm"},
                {"divisions", 1.0, 0.0, 20.0,
-                "whole number k: 176 k^3 elements, finest along the hole; 0: the cuboids"}},
+                "whole number k: 144 k^3 elements, finest where the ring folds; 0: the cuboids"}},
               3},
              make_half_seal}};
 }

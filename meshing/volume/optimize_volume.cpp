@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "iga/core/error.h"
@@ -20,13 +21,15 @@ using iga::MultiPatch;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Far from the optimum a small power of the plain mean ratio converges in few steps; growing
-/// powers then lower the worst elements.
-constexpr std::array<ShapeMeasure, 4> measures{
-    {{.power = 2},
-     {.power = 4, .shape_ratio_weight = 1.0, .shape_ratio_power = 8},
-     {.power = 8, .shape_ratio_weight = 1.0, .shape_ratio_power = 16},
-     {.power = 12, .shape_ratio_weight = 1.0, .shape_ratio_power = 32}}};
+/// Far from the optimum a small power of the plain mean ratio converges in few steps; then shape
+/// ratios near the aim and above it count, so that the others do not suffer for the worst.
+constexpr std::array<ShapeMeasure, 4> measures{{{.power = 2},
+                                                {.power = 4, .shape_ratio_power = 8},
+                                                {.power = 4, .shape_ratio_power = 16},
+                                                {.power = 4, .shape_ratio_power = 32}}};
+/// The aim: this part of the start's worst shape ratio, but not below `good_shape_ratio`.
+constexpr double aimed_shape_ratio = 0.6;
+constexpr double good_shape_ratio = 2.0;
 /// What is reported as energy.
 constexpr ShapeMeasure reported_measure{.power = 2, .shape_ratio_weight = 0.0};
 /// All but the last need not be minimised exactly.
@@ -328,8 +331,12 @@ OptimizedVolume optimize_volume(const MultiPatch<3>& deformed, const BoundaryFea
         points = minimizer.points();
         keep(points);
     }
+    const double aim =
+        std::max(aimed_shape_ratio * std::min(summary.max_shape_ratio, 1e3), good_shape_ratio);
     for (std::size_t i = 0; i < measures.size(); ++i) {
         ShapeMeasure measure = measures[i];
+        measure.shape_ratio_weight =
+            i > 0 ? std::pow(std::numbers::sqrt3 / aim, measure.shape_ratio_power) : 0.0;
         const bool is_last = i + 1 == measures.size();
         if (energy.value(points, measure) == infinity) {
             measure.shape_ratio_weight = 0.0;

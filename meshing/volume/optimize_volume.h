@@ -10,7 +10,7 @@ struct VolumeOptimizationOptions {
     int max_rounds = 20;
     int steps_per_round = 15;
     /// A round that lowers the last energy by less than this part ends the optimisation.
-    double tolerance = 5e-3;
+    double tolerance = 1e-3;
     /// False: the boundary stays as it is.
     bool slide_boundary = true;
     /// The elements at re-entrant edges stay as they are: deformations are singular there, and a

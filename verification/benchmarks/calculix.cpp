@@ -168,7 +168,7 @@ std::vector<Case> calculix_cases() {
                           [](Recorder& r) { distorted_block(r, true); }),
             calculix_case("CalculiX, Cook's membrane", false, cook_slab),
             calculix_case("CalculiX, Cook's membrane, quadratic", false, quadratic_cook_cases),
-            half_seal_case("CalculiX, half-seal, 128 elements", bulk_modulus, 1.0, false),
+            half_seal_case("CalculiX, half-seal, 144 elements", bulk_modulus, 1.0, false),
             half_seal_case("CalculiX, half-seal, kappa = 20", bulk_modulus, 3.0, true),
             half_seal_case("CalculiX, half-seal, kappa = 10", 10.0, 3.0, true)};
 }
