@@ -61,6 +61,7 @@ iga::AcceptedStep<3> meshed_again(const iga::AcceptedStep<3>& step) {
     reference.gradient = MatrixX::Zero(space.n_dofs(), 9);
     reference.gradient.col(0).setOnes();
     iga::AcceptedStep<3> after = step;
+    after.state.n_remeshings = 1;
     after.state.reference = std::make_shared<const iga::ReferenceConfiguration<3>>(reference);
     after.remeshing = iga::RemeshingReport{};
     return after;

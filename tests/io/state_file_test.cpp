@@ -60,7 +60,9 @@ iga::AcceptedStep<2> some_step() {
 
 TEST_CASE("state file: everything comes back with every digit", "[io]") {
     const TemporaryFolder folder;
-    const iga::AcceptedStep<2> step = some_step();
+    iga::AcceptedStep<2> step = some_step();
+    // Not meshed again: the reference is the undeformed body at hand.
+    step.state.n_remeshings = 0;
     write_state<2>(folder / "states/0012.h5", step, origin);
     const iga::AcceptedStep<2> back =
         read_state<2>(folder / "states/0012.h5", step.state.reference, origin);
@@ -71,7 +73,7 @@ TEST_CASE("state file: everything comes back with every digit", "[io]") {
     CHECK(back.state.time_direction == step.state.time_direction);
     CHECK(back.state.displacement_scale == step.state.displacement_scale);
     CHECK(back.state.n_steps == 12);
-    CHECK(back.state.n_remeshings == 2);
+    CHECK(back.state.n_remeshings == 0);
     CHECK(back.state.last_remeshing == 0.1);
     CHECK_FALSE(back.state.watches_quality);
     CHECK(back.state.displacement == step.state.displacement);
@@ -112,6 +114,21 @@ TEST_CASE("state file: the reference of a body that was meshed again", "[io]") {
     CHECK(back.remeshing->cause == "time");
     CHECK(back.remeshing->energy_transferred == 1.0 / 3.0);
     CHECK(back.remeshing->reactions_after == step.remeshing->reactions_after);
+}
+
+TEST_CASE("state file: a new mesh of the undeformed body comes back", "[io]") {
+    const TemporaryFolder folder;
+    const iga::AcceptedStep<2> step = some_step();
+    REQUIRE(step.state.reference->is_undeformed());
+    REQUIRE(step.state.n_remeshings > 0);
+    write_state<2>(folder / "0012.h5", step, origin);
+    const iga::AcceptedStep<2> back = read_state<2>(folder / "0012.h5", {}, origin);
+    REQUIRE(back.state.reference);
+    CHECK(back.state.reference->is_undeformed());
+    CHECK(back.state.n_remeshings == 2);
+    CHECK(back.state.reference->space->geometry().patches[0].control_points() ==
+          square().patches[0].control_points());
+    CHECK(back.state.displacement == step.state.displacement);
 }
 
 TEST_CASE("state file: another deck, geometry or signature is named with both", "[io]") {
