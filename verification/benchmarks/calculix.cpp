@@ -144,14 +144,14 @@ void quadratic_cook_cases(Recorder& recorder) {
     quadratic_bricks(recorder, "kappa / mu = 1000", 24, 375.0, 13.174, 12.516, 1e-2);
 }
 
-/// The half seal's arm pushed in by 8 mm: nodes on the exact geometry, its cuts held, the cap free
-/// across.
+/// The half seal's arm pushed in by 26 mm, as drivers/decks/half_seal.toml does without meshing
+/// again: nodes on the exact geometry, its cuts held, the cap guided.
 void half_seal(Recorder& recorder, double bulk_modulus_of_seal, double divisions) {
     const MultiPatch<3> seal =
         interpolate<3>(part<3>("half_seal", {{"divisions", divisions}}), 1, std::nullopt);
     Problem problem = neo_hookean_problem(Kinematics::solid, shear_modulus, bulk_modulus_of_seal);
-    problem.supports = {make_support("cuts", 0.0, 0.0, 0.0), make_support("cap", -8.0, {}, {})};
-    compare(recorder, std::make_shared<const Space<3>>(seal), problem, 0.125);
+    problem.supports = {make_support("cuts", 0.0, 0.0, 0.0), make_support("cap", -26.0, 0.0, 0.0)};
+    compare(recorder, std::make_shared<const Space<3>>(seal), problem, 0.05);
 }
 
 Case half_seal_case(const std::string& name, double kappa, double divisions, bool is_long) {
