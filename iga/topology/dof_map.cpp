@@ -5,34 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "iga/core/disjoint_sets.h"
 #include "iga/core/error.h"
 
 namespace couture::iga {
 
 namespace {
-
-/// Disjoint sets of functions, numbered patch after patch.
-class FunctionClasses {
-  public:
-    explicit FunctionClasses(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-    int find(int i) {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    // The smaller number stays the root: roots come first in numbering order.
-    void join(int i, int j) {
-        i = find(i);
-        j = find(j);
-        parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-  private:
-    std::vector<int> parent_;
-};
 
 /// Pairs of a function on the entity and the first function of its line in `direction`.
 template <int d, typename Visit>
@@ -89,7 +67,7 @@ DofMap make_dof_map(const MultiPatch<d>& geometry, const std::vector<TensorSpace
     for (std::size_t p = 0; p < spaces.size(); ++p) {
         offset[p + 1] = offset[p] + spaces[p].n_basis();
     }
-    FunctionClasses classes(offset.back());
+    DisjointSets classes(offset.back());
     for (const Interface<d>& interface : geometry.interfaces) {
         const TensorSpace<d>& first = spaces[interface.first_patch];
         const TensorSpace<d>& second = spaces[interface.second_patch];

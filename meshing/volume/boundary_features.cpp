@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "iga/core/disjoint_sets.h"
 #include "iga/core/error.h"
 #include "iga/topology/side_patch.h"
 
@@ -31,27 +32,6 @@ struct Edge {
     std::vector<EdgeUse> uses;
     std::set<std::string> names;
     bool is_feature = false;
-};
-
-/// Disjoint sets; the smaller number stays the root.
-class Classes {
-  public:
-    explicit Classes(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-    int find(int i) {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    void join(int i, int j) {
-        i = find(i);
-        j = find(j);
-        parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-  private:
-    std::vector<int> parent_;
 };
 
 Vector3 outward_normal(const MultiPatch<3>& geometry, const Entity& side, const Vector3& xi,
@@ -247,7 +227,7 @@ struct Finder {
 
 /// Numbers the classes in order of their first members.
 template <typename Member>
-std::vector<std::vector<Member>> grouped(const std::vector<Member>& members, Classes& classes,
+std::vector<std::vector<Member>> grouped(const std::vector<Member>& members, DisjointSets& classes,
                                          std::vector<int>& group_of) {
     std::vector<std::vector<Member>> groups;
     group_of.assign(members.size(), -1);
@@ -316,7 +296,7 @@ BoundaryFeatures::BoundaryFeatures(const MultiPatch<3>& initial, double feature_
         }
     };
 
-    Classes side_classes(finder.sides.size());
+    DisjointSets side_classes(finder.sides.size());
     std::vector<const Edge*> features;
     std::vector<Entity> feature_edges;
     struct EdgeEnd {
@@ -352,7 +332,7 @@ BoundaryFeatures::BoundaryFeatures(const MultiPatch<3>& initial, double feature_
         set(finder.dofs_on(finder.sides[i]), Freedom::face, face_of[i]);
     }
 
-    Classes edge_classes(features.size());
+    DisjointSets edge_classes(features.size());
     for (const auto& [vertex, ends] : ends_at) {
         const bool is_smooth =
             ends.size() == 2 && features[ends[0].edge]->names == features[ends[1].edge]->names &&

@@ -39,18 +39,6 @@ Face face_of(const Hexahedron& x, int i, const Vector3& centroid) {
 
 }  // namespace
 
-double shape_ratio(const Hexahedron& corners) {
-    const Vector3 centroid = corners.rowwise().mean();
-    const double A = (corners.colwise() - centroid).colwise().norm().maxCoeff();
-    double B = infinity;
-    for (int i = 0; i < 6; ++i) {
-        const Face face = face_of(corners, i, centroid);
-        const double area = face.area.norm();
-        B = std::min(B, area > 0.0 ? std::abs(face.to_center.dot(face.area)) / area : 0.0);
-    }
-    return B > 0.0 ? A / B : infinity;
-}
-
 SmoothShapeRatio smooth_shape_ratio(const Hexahedron& corners, int orientation) {
     const Vector3 centroid = corners.rowwise().mean();
     const Hexahedron arms = corners.colwise() - centroid;

@@ -497,7 +497,7 @@ ShapeSummary ShapeEnergy::summary(const MatrixX& points) const {
                 }
             }
             worst[i].max_shape_ratio =
-                std::max(worst[i].max_shape_ratio, shape_ratio(element.corners()));
+                std::max(worst[i].max_shape_ratio, iga::shape_ratio(element.corners()));
         }
     });
     ShapeSummary result = worst[0];

@@ -35,10 +35,10 @@ Hexahedron disturbed(unsigned seed, double size) {
 }  // namespace
 
 TEST_CASE("shape_ratio: half diagonal over half thickness of a box", "[volume]") {
-    CHECK(shape_ratio(box(1.0, 1.0, 1.0)) == Approx(std::numbers::sqrt3).epsilon(rounding));
-    CHECK(shape_ratio(box(1.0, 2.0, 0.5)) ==
+    CHECK(iga::shape_ratio(box(1.0, 1.0, 1.0)) == Approx(std::numbers::sqrt3).epsilon(rounding));
+    CHECK(iga::shape_ratio(box(1.0, 2.0, 0.5)) ==
           Approx(std::sqrt(1.0 + 4.0 + 0.25) / 0.5).epsilon(rounding));
-    CHECK(shape_ratio(box(1.0, 1.0, 0.0)) == std::numeric_limits<double>::infinity());
+    CHECK(iga::shape_ratio(box(1.0, 1.0, 0.0)) == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("shape_ratio: simple shear of a cube", "[volume]") {
@@ -48,14 +48,14 @@ TEST_CASE("shape_ratio: simple shear of a cube", "[volume]") {
     sheared.row(0) += gamma * sheared.row(2);
     const double A = 0.5 * std::sqrt((1.0 + gamma) * (1.0 + gamma) + 2.0);
     const double B = 0.5 / std::sqrt(1.0 + gamma * gamma);
-    CHECK(shape_ratio(sheared) == Approx(A / B).epsilon(rounding));
+    CHECK(iga::shape_ratio(sheared) == Approx(A / B).epsilon(rounding));
 }
 
 TEST_CASE("shape ratios: do not depend on position, size, rotation", "[volume]") {
     const Hexahedron hexahedron = disturbed(3, 0.2);
     const Matrix<3> rotation = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).matrix();
     const Hexahedron other = (5.0 * rotation * hexahedron).colwise() + Vector3(3.0, -1.0, 0.5);
-    CHECK(shape_ratio(other) == Approx(shape_ratio(hexahedron)).epsilon(rounding));
+    CHECK(iga::shape_ratio(other) == Approx(iga::shape_ratio(hexahedron)).epsilon(rounding));
     CHECK(smooth_shape_ratio(other, 1).value ==
           Approx(smooth_shape_ratio(hexahedron, 1).value).epsilon(rounding));
 }
@@ -65,7 +65,7 @@ TEST_CASE("smooth_shape_ratio: 1 for a cube, never above the exact one", "[volum
     for (unsigned seed = 0; seed < 20; ++seed) {
         const Hexahedron hexahedron = disturbed(seed, 0.25);
         CHECK(std::numbers::sqrt3 * smooth_shape_ratio(hexahedron, 1).value <=
-              shape_ratio(hexahedron) * (1.0 + rounding));
+              iga::shape_ratio(hexahedron) * (1.0 + rounding));
     }
 }
 
