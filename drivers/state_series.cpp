@@ -83,6 +83,17 @@ std::vector<iga::AcceptedStep<d>> StateSeries<d>::read_all() const {
     for (std::size_t i = 0; i < all.size(); ++i) {
         try {
             iga::AcceptedStep<d> step = io::read_state<d>(all[i], undeformed_, origin_);
+            if (step_name(step.number, step.remeshing.has_value()) != all[i].stem().string()) {
+                throw FileError("{}: holds step {}, not the one that it is named after",
+                                all[i].string(), step.number);
+            }
+            const int expected = steps.empty() ? 1 : steps.back().number + 1;
+            if (step.number > expected) {
+                log::warn(
+                    fmt::format("{}: the states of steps {} to {} are missing: the history "
+                                "has a gap",
+                                folder_.string(), expected, step.number - 1));
+            }
             if (!steps.empty()) {
                 steps.back().state.displacement = {};
                 steps.back().state.direction = {};

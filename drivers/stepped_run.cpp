@@ -73,16 +73,8 @@ class SteppedRun {
     [[nodiscard]] const SteppingSummary& stepping() const { return stepping_; }
     [[nodiscard]] const iga::AcceptedStep<d>& last() const { return last_; }
 
-    /// Removes what an earlier run left.
-    void start() {
-        if (const int n = states_.clear(); n > 0) {
-            log::info(
-                fmt::format("{}: {} states of an earlier run removed; --resume goes on from "
-                            "them",
-                            states_.folder().string(), n));
-        }
-        fields_.clear();
-    }
+    /// What an earlier run left is removed when this one has a step of its own to write.
+    void start() { has_old_files_ = true; }
 
     void resume() {
         std::vector<iga::AcceptedStep<d>> steps = states_.read_all();
@@ -160,7 +152,21 @@ class SteppedRun {
         }
     }
 
+    void remove_old_files() {
+        has_old_files_ = false;
+        if (const int n = states_.clear(); n > 0) {
+            log::info(
+                fmt::format("{}: {} states of an earlier run removed (--resume would have "
+                            "gone on from them)",
+                            states_.folder().string(), n));
+        }
+        fields_.clear();
+    }
+
     void keep(const iga::AcceptedStep<d>& step) {
+        if (has_old_files_) {
+            remove_old_files();
+        }
         const StepSummary record = to_summary<d>(step);
         // The state comes last: what it is there for is there, too.
         if (fields_.is_due(record)) {
@@ -251,6 +257,7 @@ class SteppedRun {
     StateSeries<d> states_;
     FieldSeries<d> fields_;
     SteppingSummary stepping_;
+    bool has_old_files_ = false;
     iga::AcceptedStep<d> last_;
 };
 

@@ -139,9 +139,9 @@ void read_remeshing(Section& section, Deck& deck) {
     options.source = section.place().source;
     options.times = section.number_list("at", dimensions::time, positive);
     require_increasing(section, "at", options.times);
-    if (!options.times.empty() && options.times.back() > deck.stepping.end) {
-        section.mistake("at", fmt::format("'at' of [remeshing] holds {:g}, after the end of the "
-                                          "run, {:g}",
+    if (!options.times.empty() && options.times.back() >= deck.stepping.end) {
+        section.mistake("at", fmt::format("'at' of [remeshing] holds {:g}, not before the end of "
+                                          "the run, {:g}",
                                           options.times.back(), deck.stepping.end));
     }
     if (section.has("at") && deck.stepping.control == iga::Control::arc_length) {
@@ -150,7 +150,7 @@ void read_remeshing(Section& section, Deck& deck) {
                         "time; take another trigger, or control = 'load'");
     }
     options.shape_ratio =
-        section.number("shape_ratio", dimensions::none, {.low = 1.0, .is_open = true});
+        section.number("shape_ratio", dimensions::none, {.low = 1.74, .is_open = true});
     options.scaled_jacobian = section.number("scaled_jacobian", dimensions::none,
                                              {.low = 0.0, .high = 1.0, .is_open = true});
     options.angle_deviation = section.number("angle_deviation", dimensions::none, positive);

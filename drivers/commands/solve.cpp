@@ -55,11 +55,14 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
         fmt::print("{}", to_table(summary));
     }
     if (!summary.finished()) {
-        fmt::print(
-            stderr,
-            "couture: the run did not reach its end: {}; its steps are kept: change [stepping] "
-            "(a smaller smallest_step, more max_iterations) and go on with --resume\n",
-            summary.stepping->reason);
+        fmt::print(stderr, "couture: the run did not reach its end: {}; {}\n",
+                   summary.stepping->reason,
+                   summary.stepping->n_steps() > 0
+                       ? "its steps are kept: change [stepping] (a smaller smallest_step, more "
+                         "max_iterations, control = \"arc_length\" at a limit point) and go on "
+                         "with --resume"
+                       : "not one step was found: make the loads smaller or the first step "
+                         "shorter");
         return ExitCode::run_failed;
     }
     if (!summary.passed()) {

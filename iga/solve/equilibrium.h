@@ -35,8 +35,8 @@ class Equilibrium {
 
     [[nodiscard]] LoadState<d> loads_at(double t) const;
 
-    /// Moves the body to `unknowns` (one column) under these loads; false where it is folded there:
-    /// forces have no meaning then.
+    /// Moves the body to `unknowns` (one column) under these loads; false where it is folded there, or
+    /// forces are not finite: they have no meaning then.
     [[nodiscard]] bool move_to(const LoadState<d>& loads, const MatrixX& unknowns);
     [[nodiscard]] const SmallestVolume<d>& smallest_volume() const { return smallest_; }
 

@@ -16,6 +16,8 @@ namespace {
 /// Steps that took at most so many iterations are followed by larger ones.
 constexpr int quick_iterations = 5;
 constexpr double growth = 1.5;
+/// Smallest step over the end of the run.
+constexpr double least_step = 1e-10;
 /// Of the missing forces on a new mesh, that are taken off at once.
 constexpr double smallest_relaxation = 1e-3;
 /// Times are equal up to the rounding of a sum of steps, relative to the end.
@@ -30,6 +32,10 @@ void check_options(const SteppingOptions& options) {
     require(options.control == Control::load || options.max_steps > 0,
             "an arc-length run may never reach its end; give max_steps");
     require(options.end > 0.0, fmt::format("end = {:g}; must be positive", options.end));
+    require(options.smallest_step >= least_step * options.end,
+            fmt::format("smallest {:g}; must be at least {:g} of the end, {:g}: time could not "
+                        "tell such steps apart",
+                        options.smallest_step, least_step, options.end));
     require(
         options.smallest_step > 0.0 && options.smallest_step <= options.first_step &&
             options.first_step <= options.largest_step,
@@ -99,8 +105,9 @@ class Stepper {
             return report_;
         }
         while (!is_at(options_.end)) {
-            if (is_remeshing_due() && !remesh(due_to_)) {
-                return report_;
+            if (is_remeshing_due()) {
+                // A new mesh is a help, not a need: without it the run goes on with the old one.
+                static_cast<void>(remesh(due_to_));
             }
             if (options_.max_steps > 0 && state_.n_steps >= options_.max_steps) {
                 report_.finished = options_.control == Control::arc_length;
@@ -185,9 +192,16 @@ class Stepper {
             log::info(fmt::format("t = {:.6g}: step {:.3g} given up: {}", state_.t, planned,
                                   newton.reason));
             if (planned <= options_.smallest_step * (1.0 + same_time)) {
-                if (remeshing_.mesh && remeshing_.on_failure && state_.t > state_.last_remeshing) {
+                if (remeshing_.mesh && remeshing_.on_failure && state_.t > state_.last_remeshing &&
+                    state_.n_remeshings < remeshing_.max_remeshings) {
                     step_ = options_.first_step;
-                    return remesh("Newton failed");
+                    if (remesh("Newton failed")) {
+                        return true;
+                    }
+                    report_.reason = fmt::format(
+                        "no equilibrium beyond t = {:.6g} with the smallest step {:g}: {}; {}",
+                        state_.t, planned, newton.reason, remeshing_fault_);
+                    return false;
                 }
                 report_.reason =
                     fmt::format("no equilibrium beyond t = {:.6g} with the smallest step {:g}: {}",
@@ -250,9 +264,19 @@ class Stepper {
 
     /// Fills `due_to_`.
     bool is_remeshing_due() {
-        if (!remeshing_.mesh || state_.n_remeshings >= remeshing_.max_remeshings) {
+        if (!remeshing_.mesh || !find_cause()) {
             return false;
         }
+        if (state_.n_remeshings >= remeshing_.max_remeshings) {
+            log::warn(fmt::format("a remeshing is due ({}), but max_remeshings = {} are done",
+                                  due_to_, remeshing_.max_remeshings));
+            state_.last_remeshing = state_.t;
+            return false;
+        }
+        return true;
+    }
+
+    bool find_cause() {
         for (const double time : remeshing_.times) {
             if (is_at(time) && state_.last_remeshing < time - same_time * options_.end) {
                 due_to_ = "time";
@@ -285,8 +309,8 @@ class Stepper {
         return {};
     }
 
-    /// Equilibrium from a state that is none, where the body was moved to last: what it lacks acts as
-    /// a load that is taken off, all at once or, where Newton fails, in steps.
+    /// Equilibrium from a state that is none, where the body was moved to last: what it lacks acts
+    /// as a load that is taken off, all at once or, where Newton fails, in steps.
     NewtonReport relax(const LoadState<d>& loads, int& n_iterations) {
         const MatrixX missing = to_displacement(loads.constraints, body_->residual());
         double left = 1.0;
@@ -314,7 +338,8 @@ class Stepper {
         }
     }
 
-    /// Goes over to a new mesh, in equilibrium at the same time; false if that failed.
+    /// Goes over to a new mesh, in equilibrium at the same time. False if that failed, or did not
+    /// better the elements: the old mesh and state stay, a warning says why.
     bool remesh(const std::string& cause) {
         RemeshingReport record;
         record.t = state_.t;
@@ -322,9 +347,26 @@ class Stepper {
         const MultiPatch<d> old_mesh = deformed_body(*state_.reference, state_.displacement);
         const MeshQuality before = quality_of(old_mesh);
         const SteppingState<d> old_state = state_;
+        const MatrixX old_forces = forces_;
+        const std::map<std::string, Vector3> old_reactions = reactions_;
+        const double old_energy = energy_;
         const auto fail = [&](const std::string& why) {
-            report_.reason =
+            remeshing_fault_ =
                 fmt::format("remeshing at t = {:.6g} ({}) failed: {}", record.t, cause, why);
+            if (state_.reference != old_state.reference) {
+                take_reference(old_state.reference);
+                const LoadState<d> loads = body_->loads_at(old_state.t);
+                static_cast<void>(
+                    body_->move_to(loads, to_unknowns(loads.constraints, old_state.displacement)));
+            }
+            state_ = old_state;
+            state_.last_remeshing = state_.t;
+            // Elements that could not be bettered once are not tried at every step.
+            state_.watches_quality = state_.watches_quality && cause == "time";
+            forces_ = old_forces;
+            reactions_ = old_reactions;
+            energy_ = old_energy;
+            log::warn(remeshing_fault_ + "; the run goes on with the old mesh");
             return false;
         };
         try {
@@ -371,6 +413,20 @@ class Stepper {
         note_forces(loads);
         const MultiPatch<d> new_mesh = deformed_body(*state_.reference, state_.displacement);
         const MeshQuality after = quality_of(new_mesh);
+        if (!(after.scaled_jacobian > 0.0) && after.scaled_jacobian < before.scaled_jacobian) {
+            return fail(
+                fmt::format("in equilibrium the new mesh has a scaled Jacobian of {:.3g}, "
+                            "the old one {:.3g}",
+                            after.scaled_jacobian, before.scaled_jacobian));
+        }
+        if (!(after.shape_ratio < before.shape_ratio) &&
+            !(after.scaled_jacobian > before.scaled_jacobian)) {
+            return fail(
+                fmt::format("the new mesh is no better: worst shape ratio {:.3g}, was "
+                            "{:.3g}, scaled Jacobian {:.3g}, was {:.3g}",
+                            after.shape_ratio, before.shape_ratio, after.scaled_jacobian,
+                            before.scaled_jacobian));
+        }
         record.energy_after = energy_;
         record.reactions_after = reactions_;
         record.volume_after = volume(new_mesh);
@@ -415,6 +471,7 @@ class Stepper {
     std::map<std::string, Vector3> reactions_;
     double energy_ = 0.0;
     std::string due_to_;
+    std::string remeshing_fault_;
     std::vector<double> stops_;
 };
 

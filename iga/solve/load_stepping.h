@@ -90,7 +90,7 @@ struct RemeshingReport {
     /// transferred displacement.
     double gradient_drift = 0.0;
     double min_det_F = 1.0;
-    /// Farthest that a point of the new mesh lay outside the old one, a length.
+    /// Farthest that a point whose values were carried over lay outside the old mesh, a length.
     double largest_gap = 0.0;
     /// Newton iterations to the equilibrium on the new mesh.
     int n_iterations = 0;
@@ -119,7 +119,8 @@ struct AcceptedStep {
 template <int d>
 struct Remeshing {
     /// The deformed body in, the same body in better elements out, with an equal signature.
-    /// @throws Error  if it can't; the run then ends, or goes on where it was not necessary
+    /// @throws Error  if it can't; the run then goes on with the old mesh, as it does where the new
+    ///                one is no better
     std::function<MultiPatch<d>(const MultiPatch<d>& deformed)> mesh;
     /// At these times, ascending.
     std::vector<double> times;

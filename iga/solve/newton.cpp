@@ -40,6 +40,9 @@ double free_dot(const VectorX& a, const VectorX& b, const std::vector<char>& is_
 template <int d>
 std::string fold(const Equilibrium<d>& body) {
     const SmallestVolume<d>& at = body.smallest_volume();
+    if (at.det_F > 0.5) {
+        return std::string("the forces are not finite");
+    }
     return fmt::format("det F = {:.3g} in patch {} at {}", at.det_F, at.patch, format_point(at.xi));
 }
 
@@ -53,7 +56,7 @@ bool note_residual(const Equilibrium<d>& body, const LoadState<d>& loads,
     report.min_det_F = body.smallest_volume().det_F;
     log::detail(fmt::format("newton {}: residual {:.2e}, det F >= {:.3g}", report.iterations,
                             report.residuals.back(), report.min_det_F));
-    return size <= std::max(options.tolerance * scale, floor);
+    return std::isfinite(scale) && size <= std::max(options.tolerance * scale, floor);
 }
 
 std::string not_converged(const NewtonReport& report, const NewtonOptions& options) {

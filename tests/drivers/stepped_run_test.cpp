@@ -248,56 +248,34 @@ TEST_CASE("couture solve: --resume is for hyperelastic decks", "[drivers]") {
 
 TEST_CASE("couture solve: probes at a time, also after a resume", "[drivers]") {
     const TemporaryFolder folder;
-    write_deck(folder, block +
-                           "[[output.probe]]\nquantity = \"displacement_x\"\nat = [1.0, 0.0, "
-                           "0.0]\nt = 0.5\nexpect = 0.25\ntolerance = 1e-12\n");
-    REQUIRE(run_couture("solve block.toml --out a", folder.path()).exit_code == 0);
-    REQUIRE(run_couture("solve block.toml --out a --resume", folder.path()).exit_code == 0);
-    const Json probe = summary_of(folder, "a")["probes"][1];
-    CHECK(probe["t"] == 0.5);
-    CHECK(probe["name"] == "displacement_x at (1, 0, 0), t = 0.5");
-}
-
-TEST_CASE("couture solve: a load that follows a table, one that follows t", "[drivers]") {
-    const TemporaryFolder folder;
-    std::string table = block;
-    table.replace(table.find("x = 0.5"), 7, "x = 0.5\namplitude = \"there and back\"");
-    table.replace(table.find("expect = 4.1282217920\ntolerance = 1e-8"), 38,
-                  "expect = 0.0\nabsolute_tolerance = 1e-9");
-    write_deck(folder, table +
-                           "[amplitude.'there and back']\nt = [0, 0.5, 1]\nvalue = [0, 1, 0]\n"
-                           "[[output.probe]]\nquantity = \"stress_xx\"\nat = [0.5, 0.5, 0.5]\n"
-                           "t = 0.5\nexpect = 4.1282217920\ntolerance = 1e-8\n");
-    const auto there_and_back = run_couture("solve block.toml", folder.path());
-    CAPTURE(there_and_back.output, there_and_back.errors);
-    CHECK(there_and_back.exit_code == 0);
-
-    std::string in_time = block;
-    in_time.replace(in_time.find("x = 0.5"), 7, "x = \"0.5*t^2\"");
-    write_deck(folder, in_time +
-                           "[[output.probe]]\nquantity = \"displacement_x\"\nat = [1.0, 0.0, "
-                           "0.0]\nt = 0.5\nexpect = 0.125\ntolerance = 1e-12\n");
-    CHECK(run_couture("solve block.toml", folder.path()).exit_code == 0);
-}
-
-TEST_CASE("couture check: hyperelastic decks", "[drivers]") {
-    const TemporaryFolder folder;
-    write_deck(folder);
-    CHECK(run_couture("check block.toml", folder.path()).output ==
-          "block.toml: valid; patches 1, unknowns 192\n");
-    const auto remeshed =
-        run_couture("check block.toml --set remeshing.on_failure=true", folder.path());
-    CHECK(remeshed.exit_code == 0);
-}
-
-TEST_CASE("couture solve: meshed again on the way, and resumed around it", "[drivers]") {
-    const TemporaryFolder folder;
-    write_deck(folder, block +
-                           "[[output.probe]]\nquantity = \"displacement_x\"\nat = [0.7, 0.2, "
-                           "0.4]\nexpect = 0.35\ntolerance = 1e-6\n");
-    const std::string run =
-        "solve block.toml --set remeshing.at=[0.5] --set output.every=4 "
-        "--set output.probe.0.tolerance=1e-6";
+    write_deck(folder, R"([geometry]
+part = "half_seal"
+[discretization]
+degree = 1
+geometry = "interpolated"
+[material.rubber]
+model = "neo_hookean"
+shear_modulus = 3
+bulk_modulus = 20
+[[fixed]]
+on = "cuts"
+[[displacement]]
+on = "cap"
+value = [-20, 0, 0]
+[stepping]
+first_step = 0.1
+largest_step = 0.1
+[remeshing]
+at = [0.5]
+[output]
+every = 4
+[[output.probe]]
+quantity = "displacement_x"
+at = [65, 1, 2]
+expect = -20
+tolerance = 1e-9
+)");
+    const std::string run = "solve block.toml";
     const auto result = run_couture(run + " --out a", folder.path());
     CAPTURE(result.output, result.errors);
     REQUIRE(result.exit_code == 0);
@@ -313,7 +291,9 @@ TEST_CASE("couture solve: meshed again on the way, and resumed around it", "[dri
     CHECK(summary["remeshings"] == 1);
     const Json report = summary["history"][5]["remeshing"];
     CHECK(report["energy"]["after"].get<double>() ==
-          Approx(report["energy"]["before"].get<double>()).epsilon(1e-6));
+          Approx(report["energy"]["before"].get<double>()).epsilon(0.02));
+    CHECK(report["transfer"] == "displacement");
+    CHECK(report["shape_ratio"]["after"] < report["shape_ratio"]["before"]);
     // From before the remeshing, and from after it.
     for (const char* last : {"0005.h5", "0005_remeshed.h5", "0007.h5"}) {
         CAPTURE(last);

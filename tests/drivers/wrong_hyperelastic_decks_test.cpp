@@ -216,7 +216,7 @@ TEST_CASE("hyperelastic deck: tables over time", "[drivers]") {
 TEST_CASE("hyperelastic deck: remeshing and probes", "[drivers]") {
     CHECK_THAT(error_of(replaced("at = [0.5, 1.5]", "")), Contains("[remeshing] says never; give"));
     CHECK_THAT(error_of(replaced("at = [0.5, 1.5]", "at = [0.5, 2.5]")),
-               Contains("'at' of [remeshing] holds 2.5, after the end of the run, 2"));
+               Contains("'at' of [remeshing] holds 2.5, not before the end of the run, 2"));
     CHECK_THAT(error_of(replaced("at = [0.5, 1.5]", "scaled_jacobian = 1.5")),
                Contains("'scaled_jacobian' of [remeshing] = 1.5 is out of range; it must be in (0, "
                         "1)"));

@@ -250,9 +250,25 @@ TEST_CASE("follow_loads: what it can't take is named", "[solve]") {
                       "load steps: smallest 1, first 0.1, largest 0.25; must be positive and not "
                       "decrease");
     options = {};
+    options.smallest_step = 1e-17;
+    CHECK_THROWS_WITH(try_it(stretched_block(1.1), options),
+                      Contains("smallest 1e-17; must be at least 1e-10 of the end, 1"));
+    options = {};
     options.control = Control::arc_length;
     CHECK_THROWS_WITH(try_it(stretched_block(1.1), options),
                       "load steps: an arc-length run may never reach its end; give max_steps");
+}
+
+TEST_CASE("follow_loads: forces beyond all numbers are no equilibrium", "[solve]") {
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1});
+    Problem problem = stretched_block(1.0);
+    problem.supports.pop_back();
+    problem.pressures = {make_pressure("side_1", -1e160)};
+    SteppingReport report;
+    const auto steps = run<3>(space, problem, {}, report);
+    CHECK(steps.empty());
+    CHECK_FALSE(report.finished);
+    CHECK_THAT(report.reason, Contains("not finite"));
 }
 
 TEST_CASE("follow_loads: a folded start is named", "[solve]") {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "iga/core/error.h"
+#include "iga/core/log.h"
 #include "iga/solve/load_stepping.h"
 #include "iga/spline/refine.h"
 #include "iga/spline/shapes.h"
@@ -174,14 +175,17 @@ TEST_CASE("transfer_state: a point outside the old mesh is named", "[solve]") {
 
 TEST_CASE("follow_loads: a homogeneous state goes on through remeshings to its closed form",
           "[solve]") {
-    const auto space = std::make_shared<const Space<3>>(
-        with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), GENERATE(1, 2), {3, 3, 3}));
+    const auto space = std::make_shared<const Space<3>>(stirred<3>(
+        with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), GENERATE(1, 2), {3, 3, 3}), 0.12));
     const Problem problem = stretched_block(2.0);
     Remeshing<3> remeshing;
     remeshing.times = {0.25, 0.5};
     remeshing.transfer = GENERATE(Transfer::displacement, Transfer::gradient);
     int n_meshes = 0;
-    remeshing.mesh = [&](const MultiPatch<3>& body) { return stirred<3>(body, 0.03 * ++n_meshes); };
+    remeshing.mesh = [&](const MultiPatch<3>& body) {
+        ++n_meshes;
+        return stirred<3>(body, -0.04);
+    };
     std::vector<AcceptedStep<3>> steps;
     const SteppingReport report = follow_loads<3>(
         make_start<3>(space), problem, {},
@@ -207,12 +211,12 @@ TEST_CASE("follow_loads: a homogeneous state goes on through remeshings to its c
 
 TEST_CASE("follow_loads: a run goes on from a remeshed state as if it had not stopped", "[solve]") {
     const auto space = std::make_shared<const Space<3>>(
-        with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}));
+        stirred<3>(with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}), 0.1));
     const Problem problem = stretched_block(1.5);
     Remeshing<3> remeshing;
     remeshing.times = {0.5};
     remeshing.transfer = GENERATE(Transfer::displacement, Transfer::gradient);
-    remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, 0.05); };
+    remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, -0.08); };
     std::vector<AcceptedStep<3>> steps;
     const auto keep = [&](const AcceptedStep<3>& step) { steps.push_back(step); };
     REQUIRE(follow_loads<3>(make_start<3>(space), problem, {}, keep, remeshing).finished);
@@ -230,22 +234,62 @@ TEST_CASE("follow_loads: a run goes on from a remeshed state as if it had not st
     }
 }
 
-TEST_CASE("follow_loads: a new mesh of another body is refused, the state kept", "[solve]") {
+TEST_CASE("follow_loads: a new mesh that can't be used is left, the run goes on", "[solve]") {
     const auto space = std::make_shared<const Space<3>>(
         with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}));
     Remeshing<3> remeshing;
     remeshing.times = {0.5};
-    remeshing.mesh = [](const MultiPatch<3>& body) {
-        MultiPatch<3> other = body;
-        other.boundary_sets.clear();
-        return other;
+    std::string why;
+    SECTION("another body") {
+        remeshing.mesh = [](const MultiPatch<3>& body) {
+            MultiPatch<3> other = body;
+            other.boundary_sets.clear();
+            return other;
+        };
+        why = "the new mesh has signature";
+    }
+    SECTION("worse elements") {
+        remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, 0.1); };
+        why = "the new mesh is no better: worst shape ratio";
+    }
+    SECTION("no mesh") {
+        remeshing.mesh = [](const MultiPatch<3>&) -> MultiPatch<3> {
+            throw GeometryError("nothing fits");
+        };
+        why = "failed: nothing fits";
+    }
+    const auto run = [&](const Remeshing<3>& how) {
+        MatrixX last;
+        const SteppingReport report = follow_loads<3>(
+            make_start<3>(space), stretched_block(1.5), {},
+            [&](const AcceptedStep<3>& step) { last = step.state.displacement; }, how);
+        CHECK(report.finished);
+        CHECK(report.n_remeshings == 0);
+        return last;
     };
-    double last = 0.0;
+    log::clear_warnings();
+    const MatrixX tried = run(remeshing);
+    const std::vector<std::string> warnings = log::warnings();
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Contains("remeshing at t = 0.5 (time) failed: ") && Contains(why) &&
+                                Contains("the run goes on with the old mesh"));
+    Remeshing<3> none;
+    none.times = remeshing.times;
+    CHECK(tried == run(none));
+}
+
+TEST_CASE("follow_loads: the number of remeshings is kept to", "[solve]") {
+    const auto space = std::make_shared<const Space<3>>(
+        stirred<3>(with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}), 0.1));
+    Remeshing<3> remeshing;
+    remeshing.times = {0.3, 0.6};
+    remeshing.max_remeshings = 1;
+    remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, -0.05); };
+    log::clear_warnings();
     const SteppingReport report = follow_loads<3>(
-        make_start<3>(space), stretched_block(1.5), {},
-        [&](const AcceptedStep<3>& step) { last = step.state.t; }, remeshing);
-    CHECK_FALSE(report.finished);
-    CHECK(last == 0.5);
-    CHECK_THAT(report.reason, Contains("remeshing at t = 0.5 (time) failed: the new mesh has "
-                                       "signature"));
+        make_start<3>(space), stretched_block(1.5), {}, [](const AcceptedStep<3>&) {}, remeshing);
+    CHECK(report.finished);
+    CHECK(report.n_remeshings == 1);
+    REQUIRE(log::warnings().size() == 1);
+    CHECK(log::warnings()[0] == "a remeshing is due (time), but max_remeshings = 1 are done");
 }
