@@ -195,6 +195,35 @@ TEST_CASE("couture solve: without --resume old states go", "[drivers]") {
     CHECK_FALSE(fs::exists(folder.path() / "a/block_0003.vtu"));
 }
 
+TEST_CASE("couture solve: a deck that can't run leaves the results of an earlier one",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    write_deck(folder);
+    REQUIRE(run_couture("solve block.toml --out a", folder.path()).exit_code == 0);
+    const std::vector<std::string> before = names_in(folder.path() / "a/states");
+    REQUIRE(before.size() == 10);
+    const auto wrong = run_couture("solve block.toml --out a --set displacement.0.x='\"sqrt(-t)\"'",
+                                   folder.path());
+    CHECK(wrong.exit_code == 2);
+    CHECK(names_in(folder.path() / "a/states") == before);
+    CHECK(fs::exists(folder.path() / "a/block.pvd"));
+}
+
+TEST_CASE("couture solve --resume: states under a wrong name and gaps are told", "[drivers]") {
+    const TemporaryFolder folder;
+    write_deck(folder);
+    REQUIRE(run_couture("solve block.toml --out a", folder.path()).exit_code == 0);
+    fs::remove(folder.path() / "a/states/0005.h5");
+    fs::copy_file(folder.path() / "a/states/0003.h5", folder.path() / "a/states/0010.h5",
+                  fs::copy_options::overwrite_existing);
+    const auto resumed = run_couture("solve block.toml --out a --resume", folder.path());
+    CHECK(resumed.exit_code == 0);
+    CHECK_THAT(resumed.errors,
+               Contains("0010.h5: holds step 3, not the one that it is named after") &&
+                   Contains("the states of steps 5 to 5 are missing") &&
+                   Contains("resumed at t = 0.9"));
+}
+
 TEST_CASE("couture solve: a load that is too large ends with 1 and keeps its steps", "[drivers]") {
     const TemporaryFolder folder;
     write_deck(folder);
