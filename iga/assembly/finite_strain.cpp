@@ -138,25 +138,29 @@ void FiniteStrain<d>::set_up_reference() {
                                    gauss_points<d>(space.tensor(p), n_gauss_points_));
         here.F_b.resize(9 * here.n_points());
         here.inverse_J_b.resize(here.n_points());
-        parallel_for(here.n_planes, [&](int i) {
+        const int n_slabs = std::min(n_threads(), here.n_planes);
+        parallel_for(n_slabs, [&](int slab) {
             GeometryPlane<d> plane;
-            grid.evaluate(i, plane);
             FieldGrid<d> values(field, p, grid);
-            values.evaluate(i, plane);
-            for (int q = 0; q < plane.n_points; ++q) {
-                const std::size_t number = here.number(i, q);
-                const VectorX H = values.value(q);
-                const Matrix<3> gradient = Eigen::Map<const RowMajor3>(H.data());
-                const double J = 1.0 + volume_change(gradient);
-                if (!(J > 0.0)) {
-                    throw GeometryError(
-                        "the deformation gradient of the reference has det F_b = {:.3g} in patch "
-                        "{} at parameter {}; it must be positive: mesh again at an earlier time or "
-                        "with finer elements",
-                        J, p, format_point(grid.parameter(i, q)));
+            for (int i = here.n_planes * slab / n_slabs; i < here.n_planes * (slab + 1) / n_slabs;
+                 ++i) {
+                grid.evaluate(i, plane);
+                values.evaluate(i, plane);
+                for (int q = 0; q < plane.n_points; ++q) {
+                    const std::size_t number = here.number(i, q);
+                    const VectorX H = values.value(q);
+                    const Matrix<3> gradient = Eigen::Map<const RowMajor3>(H.data());
+                    const double J = 1.0 + volume_change(gradient);
+                    if (!(J > 0.0)) {
+                        throw GeometryError(
+                            "the deformation gradient of the reference has det F_b = {:.3g} in "
+                            "patch {} at parameter {}; it must be positive: mesh again at an "
+                            "earlier time or with finer elements",
+                            J, p, format_point(grid.parameter(i, q)));
+                    }
+                    Eigen::Map<RowMajor3>(&here.F_b[9 * number]) = gradient + Matrix<3>::Identity();
+                    here.inverse_J_b[number] = 1.0 / J;
                 }
-                Eigen::Map<RowMajor3>(&here.F_b[9 * number]) = gradient + Matrix<3>::Identity();
-                here.inverse_J_b[number] = 1.0 / J;
             }
         });
     }

@@ -6,21 +6,15 @@
 #include "iga/core/error.h"
 #include "iga/spline/refine.h"
 #include "iga/spline/shapes.h"
+#include "tests/iga/solve/rubber_problems.h"
 
 using namespace couture;
 using namespace couture::iga;
 using Catch::Matchers::Contains;
+using couture::iga::tests::rubber;
+using couture::iga::tests::stretched_block;
 
 namespace {
-
-Problem rubber(Kinematics kinematics) {
-    Problem problem;
-    problem.kinematics = kinematics;
-    problem.materials.resize(1);
-    problem.materials[0].name = "rubber";
-    problem.materials[0].hyperelastic = make_hyperelastic(StoredEnergy::neo_hookean, 3.0, 20.0);
-    return problem;
-}
 
 template <int d>
 SpacePtr<d> space_of(Patch<d> patch, int degree, const std::array<int, d>& n_elements) {
@@ -39,13 +33,6 @@ std::vector<AcceptedStep<d>> run(const SpacePtr<d>& space, const Problem& proble
     report = follow_loads<d>(make_start<d>(space), problem, options,
                              [&](const AcceptedStep<d>& step) { steps.push_back(step); });
     return steps;
-}
-
-Problem stretched_block(double stretch) {
-    Problem problem = rubber(Kinematics::solid);
-    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2"), make_symmetry("side_4"),
-                        make_support("side_1", stretch - 1.0, {}, {})};
-    return problem;
 }
 
 }  // namespace

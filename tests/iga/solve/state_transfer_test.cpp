@@ -10,21 +10,14 @@
 #include "iga/solve/load_stepping.h"
 #include "iga/spline/refine.h"
 #include "iga/spline/shapes.h"
+#include "tests/iga/solve/rubber_problems.h"
 
 using namespace couture;
 using namespace couture::iga;
 using Catch::Matchers::Contains;
+using couture::iga::tests::stretched_block;
 
 namespace {
-
-Problem rubber(Kinematics kinematics) {
-    Problem problem;
-    problem.kinematics = kinematics;
-    problem.materials.resize(1);
-    problem.materials[0].name = "rubber";
-    problem.materials[0].hyperelastic = make_hyperelastic(StoredEnergy::neo_hookean, 3.0, 20.0);
-    return problem;
-}
 
 template <int d>
 MultiPatch<d> with_sides(Patch<d> patch, int degree, const std::array<int, d>& n_elements) {
@@ -68,13 +61,6 @@ MatrixX at_control_points(const Space<d>& space,
         u.row(space.dofs(0)[i]) = displacement(points.row(i).transpose()).transpose();
     }
     return u;
-}
-
-Problem stretched_block(double stretch) {
-    Problem problem = rubber(Kinematics::solid);
-    problem.supports = {make_symmetry("side_0"), make_symmetry("side_2"), make_symmetry("side_4"),
-                        make_support("side_1", stretch - 1.0, {}, {})};
-    return problem;
 }
 
 Matrix<3> cauchy(const Problem& problem, const SteppingState<3>& state, const Vector3& xi) {
