@@ -1,13 +1,12 @@
 #include "drivers/linear_run.h"
 
-#include "drivers/hash.h"
 #include "drivers/job_geometry.h"
+#include "drivers/job_summary.h"
 #include "drivers/probes.h"
 #include "drivers/result_files.h"
 #include "iga/assembly/elasticity.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
-#include "iga/core/parallel.h"
 
 namespace couture::drivers {
 
@@ -58,7 +57,7 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     }
 
     timer = {};
-    Summary summary;
+    Summary summary = describe_job<d>(deck, geometry, certificate);
     summary.volume = iga::body_volume(
         deck.problem, deck.discretization.interpolates_geometry ? space->geometry() : geometry);
     // Locations stay valid: refinement and interpolation keep every patch's parameters.
@@ -70,19 +69,8 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     }
     add_phase("output", timer.seconds());
 
-    summary.deck = deck.path.string();
-    summary.deck_hash = fnv_hash(deck.text);
-    summary.title = deck.title;
-    summary.units = deck.units.name();
-    summary.signature = iga::signature(geometry);
-    summary.certificate = certificate;
-    summary.dimension = d;
-    summary.n_patches = geometry.n_patches();
-    summary.n_interfaces = static_cast<int>(geometry.interfaces.size());
-    summary.n_control_points = geometry.n_control_points();
     summary.n_elements = result.n_elements;
     summary.n_unknowns = result.n_unknowns;
-    summary.n_threads = n_threads();
     summary.solver = result.solver;
     for (const auto& load_case : result.cases) {
         summary.cases.push_back(to_summary(load_case));

@@ -7,6 +7,7 @@
 #include "drivers/field_series.h"
 #include "drivers/hash.h"
 #include "drivers/job_geometry.h"
+#include "drivers/job_summary.h"
 #include "drivers/probes.h"
 #include "drivers/remesher.h"
 #include "drivers/state_series.h"
@@ -14,7 +15,6 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
-#include "iga/core/parallel.h"
 #include "iga/solve/static_system.h"
 #include "io/atomic_file.h"
 
@@ -322,26 +322,15 @@ Summary run_stepped(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     run.run();
     end_phase("load steps");
 
-    Summary summary;
+    Summary summary = describe_job<d>(deck, geometry, certificate);
     summary.probes = run.probes();
     end_phase("probes");
     for (const auto& file : run.files()) {
         summary.files.push_back(file.string());
     }
-    summary.deck = deck.path.string();
-    summary.deck_hash = fnv_hash(deck.text);
-    summary.title = deck.title;
-    summary.units = deck.units.name();
-    summary.signature = iga::signature(geometry);
-    summary.certificate = certificate;
-    summary.dimension = d;
-    summary.n_patches = geometry.n_patches();
-    summary.n_interfaces = static_cast<int>(geometry.interfaces.size());
-    summary.n_control_points = geometry.n_control_points();
     summary.volume = iga::body_volume(deck.problem, run.space().geometry());
     summary.n_elements = count_elements<d>(run.space());
     summary.n_unknowns = n_unknowns;
-    summary.n_threads = n_threads();
     summary.stepping = run.stepping();
     summary.solver.solver = "newton, " + deck.solver.name;
     summary.solver.iterations = summary.stepping->n_iterations();

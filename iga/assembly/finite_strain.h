@@ -79,8 +79,6 @@ class FiniteStrain {
     /// The same at a parameter of a patch. @param H  F - I there
     [[nodiscard]] Matrix<3> piola_at(int patch, const Vector<d>& xi, const Matrix<3>& H) const;
 
-    [[nodiscard]] const ReferenceConfiguration<d>& reference() const { return *reference_; }
-
   private:
     struct PatchState;
     [[nodiscard]] const Hyperelastic& material(int patch) const;

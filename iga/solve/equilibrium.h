@@ -62,8 +62,6 @@ class Equilibrium {
     /// Largest entry of the derivative.
     [[nodiscard]] double stiffness_scale() const;
 
-    [[nodiscard]] const FiniteStrain<d>& body() const { return body_; }
-
   private:
     [[nodiscard]] BlockMatrix extended_matrix() const;
 

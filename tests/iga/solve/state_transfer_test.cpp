@@ -264,6 +264,61 @@ TEST_CASE("follow_loads: a new mesh that can't be used is left, the run goes on"
     CHECK(tried == run(none));
 }
 
+TEST_CASE("follow_loads: elements that get worse than a limit are meshed again", "[solve]") {
+    const auto space = std::make_shared<const Space<3>>(
+        stirred<3>(with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}), 0.1));
+    Remeshing<3> remeshing;
+    remeshing.mesh = [](const MultiPatch<3>& body) { return stirred<3>(body, -0.05); };
+    std::string cause;
+    SECTION("shape ratio") {
+        remeshing.shape_ratio = 2.1;
+        cause = "shape ratio ";
+    }
+    SECTION("scaled Jacobian") {
+        remeshing.scaled_jacobian = 0.99;
+        cause = "scaled Jacobian ";
+    }
+    SECTION("angle deviation") {
+        remeshing.angle_deviation = 0.5;
+        cause = "angle deviation ";
+    }
+    std::vector<RemeshingReport> reports;
+    const SteppingReport report = follow_loads<3>(
+        make_start<3>(space), stretched_block(1.5), {},
+        [&](const AcceptedStep<3>& step) {
+            if (step.remeshing) {
+                reports.push_back(*step.remeshing);
+            }
+        },
+        remeshing);
+    CHECK(report.finished);
+    REQUIRE_FALSE(reports.empty());
+    CHECK_THAT(reports[0].cause, Contains(cause));
+    log::clear_warnings();
+}
+
+TEST_CASE("follow_loads: a remeshing on failure that fails ends the run and says both", "[solve]") {
+    // The moving face would pass through the held one.
+    const auto space = std::make_shared<const Space<3>>(
+        with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1}));
+    Remeshing<3> remeshing;
+    remeshing.on_failure = true;
+    remeshing.mesh = [](const MultiPatch<3>&) -> MultiPatch<3> {
+        throw GeometryError("nothing fits");
+    };
+    SteppingOptions options;
+    options.smallest_step = 1e-2;
+    double last = 0.0;
+    const SteppingReport report = follow_loads<3>(
+        make_start<3>(space), stretched_block(-0.5), options,
+        [&](const AcceptedStep<3>& step) { last = step.state.t; }, remeshing);
+    CHECK_FALSE(report.finished);
+    CHECK(report.t == last);
+    CHECK_THAT(report.reason, Contains("no equilibrium beyond t = ") &&
+                                  Contains("(Newton failed) failed: nothing fits"));
+    log::clear_warnings();
+}
+
 TEST_CASE("follow_loads: the number of remeshings is kept to", "[solve]") {
     const auto space = std::make_shared<const Space<3>>(
         stirred<3>(with_sides<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {2, 2, 2}), 0.1));
