@@ -35,3 +35,6 @@ pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
 find_package(pugixml REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+
+find_package(OpenMesh CONFIG REQUIRED)
+find_package(CGAL 5.5 CONFIG REQUIRED)
