@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "iga/core/error.h"
 
@@ -49,6 +50,7 @@ CutSurface::CutSurface(const TriangleSoup& soup) : points_(soup.points) {
     for (int v = 0; v < n_vertices(); ++v) parent_[v] = v;
     parent_face_.resize(n_faces);
     for (int f = 0; f < n_faces; ++f) parent_face_[f] = f;
+    original_ = parent_;
     link_outgoing();
 }
 
@@ -99,6 +101,8 @@ CutSurface::CutSurface(const SurfaceMesh& mesh, std::span<const FaceHandle> face
             origin_[corner] = v;
         }
     }
+    original_.resize(points_.size());
+    std::iota(original_.begin(), original_.end(), 0);
     link_outgoing();
 }
 
@@ -127,6 +131,7 @@ int CutSurface::split_edge(int h, double fraction) {
     const int middle = n_vertices();
     points_.push_back((1.0 - fraction) * points_[from] + fraction * points_[to]);
     parent_.push_back(-1);
+    original_.push_back(middle);
     splits_.push_back({from, to, fraction, middle});
 
     // Side: s runs from -> to. Its triangle keeps the first half; the new one gets the second half
@@ -161,9 +166,7 @@ void CutSurface::split_chords() {
     // New vertices lie inside, so that splits make no further chords; but they move edges to new
     // halfedges, which are looked at as well.
     for (int h = 0; h < n_halfedges(); ++h) {
-        if (twin_[h] >= 0 && is_boundary_vertex(origin(h)) && is_boundary_vertex(target(h))) {
-            split_edge(h);
-        }
+        if (is_chord(h)) split_edge(h);
     }
 }
 
@@ -177,6 +180,7 @@ void CutSurface::split_vertex(int v, std::vector<int>& outgoing) {
             copy = n_vertices();
             points_.push_back(points_[v]);
             parent_.push_back(parent_[v]);
+            original_.push_back(original_[v]);
             outgoing_.push_back(-1);
         }
         is_first = false;

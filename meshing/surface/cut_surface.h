@@ -51,6 +51,10 @@ class CutSurface {
     [[nodiscard]] bool is_boundary_vertex(int v) const {
         return outgoing_[v] >= 0 && twin_[outgoing_[v]] < 0;
     }
+    /// Whether the edge of h joins two boundary vertices without lying on the boundary.
+    [[nodiscard]] bool is_chord(int h) const {
+        return twin_[h] >= 0 && is_boundary_vertex(origin(h)) && is_boundary_vertex(target(h));
+    }
     [[nodiscard]] std::array<int, 3> triangle(int face) const {
         return {origin_[3 * face], origin_[3 * face + 1], origin_[3 * face + 2]};
     }
@@ -65,6 +69,8 @@ class CutSurface {
     /// Number in the mesh or soup that the piece was taken from; -1 for vertices that came by
     /// splits.
     [[nodiscard]] int parent(int v) const { return parent_[v]; }
+    /// The vertex that v is a copy of since a slice; v itself if it is none.
+    [[nodiscard]] int original(int v) const { return original_[v]; }
     [[nodiscard]] int parent_face(int face) const { return parent_face_[face]; }
 
     /// A vertex that came by splitting the edge between two others.
@@ -83,9 +89,8 @@ class CutSurface {
     /// @return the new vertex
     int split_edge(int h, double fraction = 0.5);
 
-    /// Splits every edge that joins two boundary vertices without lying on the boundary itself, so
-    /// that a path can pass. Afterwards any two vertices inside are joined by a path inside, if the
-    /// piece is connected.
+    /// Splits every chord, so that a path can pass. Afterwards any two vertices inside are joined
+    /// by a path inside, if the piece is connected.
     void split_chords();
 
     /// Opens the surface along a path of halfedges, each of which starts where the one before it
@@ -113,6 +118,7 @@ class CutSurface {
     std::vector<int> twin_;
     std::vector<int> outgoing_;
     std::vector<int> parent_;
+    std::vector<int> original_;
     std::vector<int> parent_face_;
     std::vector<Split> splits_;
 };

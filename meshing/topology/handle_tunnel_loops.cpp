@@ -1,0 +1,582 @@
+#include "meshing/topology/handle_tunnel_loops.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "iga/core/error.h"
+#include "meshing/surface/shortest_paths.h"
+#include "meshing/topology/homology_basis.h"
+#include "meshing/topology/linking.h"
+
+namespace couture::meshing {
+
+namespace {
+
+using Class = std::vector<int>;
+
+enum class Kind { handle, tunnel };
+
+// Closed path of halfedges.
+struct Loop {
+    double length = 0.0;
+    std::vector<int> path;
+    Class homology_class;
+};
+
+bool is_zero(const Class& c) {
+    return std::all_of(c.begin(), c.end(), [](int x) { return x == 0; });
+}
+
+// Of c and -c the one whose first entry other than 0 is positive.
+Class without_sign(Class c) {
+    const auto first = std::find_if(c.begin(), c.end(), [](int x) { return x != 0; });
+    if (first != c.end() && *first < 0) {
+        for (int& x : c) x = -x;
+    }
+    return c;
+}
+
+bool is_of_kind(const Class& c, const IntegerMatrix& projector, Kind kind) {
+    const std::vector<long long> row(c.begin(), c.end());
+    const auto image = multiply(row, projector);
+    return kind == Kind::tunnel
+               ? image == row
+               : std::all_of(image.begin(), image.end(), [](long long x) { return x == 0; });
+}
+
+// The shortest loops found so far, one for each class of either kind.
+class LoopPool {
+  public:
+    LoopPool(const AnnotatedSurface& annotated, const IntegerMatrix& projector)
+        : annotated_(annotated), projector_(projector), paths_(annotated.surface) {}
+
+    // Loops through each source that consist of two shortest paths from it and one edge.
+    void search(const std::vector<int>& sources, double longest) {
+        const CutSurface& surface = annotated_.surface;
+        is_blocked_.assign(surface.n_vertices(), 0);
+        for (int v = 0; v < surface.n_vertices(); ++v) {
+            is_blocked_[v] = surface.is_boundary_vertex(v);
+        }
+        for (const int source : sources) {
+            if (!is_blocked_[source]) search_from(source, longest);
+        }
+    }
+
+    // The shortest loops of a kind that extend `chosen` to a primitive system, at most `n` of them.
+    [[nodiscard]] std::vector<Loop> shortest(Kind kind, int n, const IntegerMatrix& chosen) {
+        std::vector<std::pair<double, Class>> order;
+        for (const auto& [homology_class, seed] : best_) {
+            if (seed.kind == kind) order.emplace_back(seed.length, homology_class);
+        }
+        std::sort(order.begin(), order.end());
+        IntegerMatrix rows = chosen;
+        std::vector<Loop> loops;
+        for (const auto& [length, homology_class] : order) {
+            if (static_cast<int>(loops.size()) == n) break;
+            rows.emplace_back(homology_class.begin(), homology_class.end());
+            if (is_primitive(rows)) {
+                loops.push_back(make_loop(best_.at(homology_class)));
+            } else {
+                rows.pop_back();
+            }
+        }
+        return loops;
+    }
+
+  private:
+    struct Seed {
+        Kind kind;
+        double length;
+        int source;
+        int halfedge;
+    };
+
+    // Classes met by one search get numbers: most pairs of vertices have the same.
+    void search_from(int source, double longest) {
+        const CutSurface& surface = annotated_.surface;
+        paths_.run({.sources = {&source, 1}, .is_blocked = &is_blocked_, .limit = 0.5 * longest});
+        class_at_.resize(surface.n_vertices());
+        met_.assign(1, Class(annotated_.rank, 0));
+        std::map<Class, int> number{{met_.front(), 0}};
+        for (const int v : paths_.settled()) {
+            const int h = paths_.arrival(v);
+            if (h < 0) {
+                class_at_[v] = 0;
+                continue;
+            }
+            const int before = class_at_[surface.origin(h)];
+            class_at_[v] = before;
+            if (annotated_.annotation[h] == 0) continue;
+            const Class sum = plus(met_[before], annotated_.annotation[h]);
+            const auto [entry, is_new] = number.try_emplace(sum, static_cast<int>(met_.size()));
+            if (is_new) met_.push_back(sum);
+            class_at_[v] = entry->second;
+        }
+        for (const int v : paths_.settled()) {
+            if (is_blocked_[v]) continue;
+            const int first = surface.outgoing(v);
+            for (int h = first; h >= 0;) {
+                look_at(source, h);
+                h = surface.rotated(h);
+                if (h == first) break;
+            }
+        }
+    }
+
+    void look_at(int source, int h) {
+        const CutSurface& surface = annotated_.surface;
+        const int v = surface.origin(h);
+        const int w = surface.target(h);
+        if (v > w || surface.twin(h) < 0 || is_blocked_[w]) return;
+        if (class_at_[v] == class_at_[w] && annotated_.annotation[h] == 0) return;
+        const double length = paths_.distance(v) + paths_.distance(w) + surface.length(h);
+        if (length == std::numeric_limits<double>::infinity()) return;
+        Class sum = plus(met_[class_at_[v]], annotated_.annotation[h]);
+        for (int k = 0; k < annotated_.rank; ++k) sum[k] -= met_[class_at_[w]][k];
+        if (is_zero(sum)) return;
+        sum = without_sign(sum);
+        if (const auto known = best_.find(sum); known != best_.end()) {
+            if (length < known->second.length)
+                known->second = {known->second.kind, length, source, h};
+            return;
+        }
+        if (is_neither_.contains(sum)) return;
+        for (const Kind kind : {Kind::handle, Kind::tunnel}) {
+            if (!is_of_kind(sum, projector_, kind)) continue;
+            best_.emplace(sum, Seed{kind, length, source, h});
+            return;
+        }
+        is_neither_.insert(sum);
+    }
+
+    [[nodiscard]] Class plus(Class sum, int annotation) const {
+        const Class& change = annotated_.classes[annotation];
+        for (int k = 0; k < annotated_.rank; ++k) sum[k] += change[k];
+        return sum;
+    }
+
+    [[nodiscard]] Loop make_loop(const Seed& seed) {
+        const CutSurface& surface = annotated_.surface;
+        paths_.run(
+            {.sources = {&seed.source, 1}, .is_blocked = &is_blocked_, .limit = seed.length});
+        const std::vector<int> out = paths_.path_to(surface.origin(seed.halfedge));
+        const std::vector<int> back = paths_.path_to(surface.target(seed.halfedge));
+        std::size_t n_common = 0;
+        while (n_common < std::min(out.size(), back.size()) && out[n_common] == back[n_common]) {
+            ++n_common;
+        }
+        Loop loop;
+        loop.path.assign(out.begin() + static_cast<std::ptrdiff_t>(n_common), out.end());
+        loop.path.push_back(seed.halfedge);
+        for (std::size_t k = back.size(); k-- > n_common;) {
+            loop.path.push_back(surface.twin(back[k]));
+        }
+        for (const int h : loop.path) loop.length += surface.length(h);
+        loop.homology_class = annotated_.class_of(loop.path);
+        return loop;
+    }
+
+    const AnnotatedSurface& annotated_;
+    const IntegerMatrix& projector_;
+    ShortestPaths paths_;
+    std::vector<char> is_blocked_;
+    std::vector<int> class_at_;
+    std::vector<Class> met_;
+    std::map<Class, Seed> best_;
+    std::set<Class> is_neither_;
+};
+
+// Shortest closed walk through a vertex whose class extends `chosen` to a primitive system of the
+// kind: Dijkstra's algorithm on pairs of a vertex and a class with entries up to `largest`. Needed
+// for knotted tubes only, whose loops are no two shortest paths and an edge.
+class CoveringSearch {
+  public:
+    CoveringSearch(const AnnotatedSurface& annotated, const IntegerMatrix& projector, Kind kind,
+                   const IntegerMatrix& chosen)
+        : annotated_(annotated), projector_(projector), kind_(kind), chosen_(chosen) {}
+
+    [[nodiscard]] std::optional<Loop> run(int source, int largest) {
+        const CutSurface& surface = annotated_.surface;
+        classes_.assign(1, Class(annotated_.rank, 0));
+        number_ = {{classes_.front(), 0}};
+        states_.clear();
+        using Entry = std::tuple<double, int, int>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        states_[{source, 0}] = {0.0, -1, 0, false};
+        queue.emplace(0.0, source, 0);
+        while (!queue.empty()) {
+            const auto [distance, v, c] = queue.top();
+            queue.pop();
+            State& state = states_.at({v, c});
+            if (state.is_settled) continue;
+            state.is_settled = true;
+            if (v == source && c != 0 && is_wanted(classes_[c])) return loop_to(v, c);
+            if (states_.size() > most_states) return std::nullopt;
+            const int first = surface.outgoing(v);
+            for (int h = first; h >= 0;) {
+                const int w = surface.target(h);
+                if (surface.twin(h) >= 0 && !surface.is_boundary_vertex(w)) {
+                    const int next = class_behind(c, h, largest);
+                    const double length = distance + surface.length(h);
+                    if (next >= 0) {
+                        State& there = states_[{w, next}];
+                        if (!there.is_settled && length < there.distance) {
+                            there = {length, h, c, false};
+                            queue.emplace(length, w, next);
+                        }
+                    }
+                }
+                h = surface.rotated(h);
+                if (h == first) break;
+            }
+        }
+        return std::nullopt;
+    }
+
+  private:
+    static constexpr std::size_t most_states = 20'000'000;
+
+    struct State {
+        double distance = std::numeric_limits<double>::infinity();
+        int arrival = -1;
+        int class_before = 0;
+        bool is_settled = false;
+    };
+    struct Hash {
+        std::size_t operator()(const std::pair<int, int>& key) const {
+            return static_cast<std::size_t>(key.second) * 1000003U +
+                   static_cast<std::size_t>(key.first);
+        }
+    };
+
+    [[nodiscard]] bool is_wanted(const Class& c) const {
+        if (!is_of_kind(c, projector_, kind_)) return false;
+        IntegerMatrix rows = chosen_;
+        rows.emplace_back(c.begin(), c.end());
+        return is_primitive(rows);
+    }
+
+    int class_behind(int c, int h, int largest) {
+        if (annotated_.annotation[h] == 0) return c;
+        Class sum = classes_[c];
+        const Class& change = annotated_.classes[annotated_.annotation[h]];
+        for (int k = 0; k < annotated_.rank; ++k) {
+            sum[k] += change[k];
+            if (std::abs(sum[k]) > largest) return -1;
+        }
+        const auto [entry, is_new] = number_.try_emplace(sum, static_cast<int>(classes_.size()));
+        if (is_new) classes_.push_back(sum);
+        return entry->second;
+    }
+
+    [[nodiscard]] Loop loop_to(int v, int c) const {
+        Loop loop;
+        loop.homology_class = classes_[c];
+        loop.length = states_.at({v, c}).distance;
+        for (State state = states_.at({v, c}); state.arrival >= 0;) {
+            loop.path.push_back(state.arrival);
+            v = annotated_.surface.origin(state.arrival);
+            state = states_.at({v, state.class_before});
+        }
+        std::reverse(loop.path.begin(), loop.path.end());
+        return loop;
+    }
+
+    const AnnotatedSurface& annotated_;
+    const IntegerMatrix& projector_;
+    Kind kind_;
+    const IntegerMatrix& chosen_;
+    std::vector<Class> classes_;
+    std::map<Class, int> number_;
+    std::unordered_map<std::pair<int, int>, State, Hash> states_;
+};
+
+bool is_simple(const CutSurface& surface, const std::vector<int>& path) {
+    std::set<int> seen;
+    return std::all_of(path.begin(), path.end(),
+                       [&](int h) { return seen.insert(surface.origin(h)).second; });
+}
+
+// At most n of the numbers, evenly spaced.
+std::vector<int> sample(const std::vector<int>& numbers, std::size_t n) {
+    if (numbers.size() <= n) return numbers;
+    std::vector<int> chosen;
+    for (std::size_t k = 0; k < n; ++k) chosen.push_back(numbers[k * numbers.size() / n]);
+    return chosen;
+}
+
+std::vector<int> vertices_of(const CutSurface& surface, const std::vector<Loop>& loops) {
+    std::set<int> vertices;
+    for (const Loop& loop : loops) {
+        for (const int h : loop.path) vertices.insert(surface.origin(h));
+    }
+    return {vertices.begin(), vertices.end()};
+}
+
+double longest_of(const std::vector<Loop>& loops) {
+    double longest = 0.0;
+    for (const Loop& loop : loops) longest = std::max(longest, loop.length);
+    return longest;
+}
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+// Adds loops of knotted tubes until there are `genus`.
+void add_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& projector, Kind kind,
+                 const std::vector<int>& sources, std::vector<Loop>& loops) {
+    const int genus = annotated.rank / 2;
+    long long largest_entry = 1;
+    for (const auto& row : projector) {
+        for (const long long entry : row)
+            largest_entry = std::max(largest_entry, std::llabs(entry));
+    }
+    IntegerMatrix chosen;
+    for (const Loop& loop : loops) {
+        chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
+    }
+    constexpr int n_doublings = 4;
+    int largest = static_cast<int>(largest_entry) + 1;
+    for (int i = 0; i < n_doublings && static_cast<int>(loops.size()) < genus; ++i, largest *= 2) {
+        std::optional<Loop> best;
+        for (const int source : sources) {
+            if (annotated.surface.is_boundary_vertex(source)) continue;
+            const auto loop =
+                CoveringSearch(annotated, projector, kind, chosen).run(source, largest);
+            if (loop && is_simple(annotated.surface, loop->path) &&
+                (!best || loop->length < best->length)) {
+                best = loop;
+            }
+        }
+        if (!best) continue;
+        chosen.emplace_back(best->homology_class.begin(), best->homology_class.end());
+        loops.push_back(*best);
+        --i;
+        largest /= 2;
+    }
+    if (static_cast<int>(loops.size()) < genus) {
+        throw TopologyError(
+            "handle and tunnel loops: found {} {} loops of {}, with classes up to {}; the surface "
+            "is knotted beyond that, or so coarse that no simple loop passes: refine it",
+            loops.size(), kind == Kind::handle ? "handle" : "tunnel", genus, largest);
+    }
+}
+
+// Splits the chords of a sliced surface, and the same edges of the one that is whole.
+void split_chords_of_both(AnnotatedSurface& sliced, AnnotatedSurface& whole) {
+    for (int h = 0; h < sliced.surface.n_halfedges(); ++h) {
+        if (!sliced.surface.is_chord(h)) continue;
+        sliced.split_edge(h);
+        whole.split_edge(h);
+    }
+}
+
+// Replaces loops that meet earlier ones, the shortest first, by the shortest that don't.
+//
+// @param crossing  loops of the other kind
+std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& projector, Kind kind,
+                                const std::vector<Loop>& loops, const std::vector<Loop>& crossing) {
+    std::vector<Loop> disjoint;
+    std::vector<bool> is_used(whole.surface.n_vertices(), false);
+    IntegerMatrix chosen;
+    const auto accept = [&](const Loop& loop) {
+        for (const int h : loop.path) is_used[whole.surface.origin(h)] = true;
+        chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
+        disjoint.push_back(loop);
+    };
+    std::size_t n = 0;
+    for (; n < loops.size(); ++n) {
+        const bool meets = std::any_of(loops[n].path.begin(), loops[n].path.end(),
+                                       [&](int h) { return is_used[whole.surface.origin(h)]; });
+        if (meets) break;
+        accept(loops[n]);
+    }
+    if (n == loops.size()) return disjoint;
+
+    AnnotatedSurface sliced = whole;
+    for (const Loop& loop : disjoint) sliced.surface.slice(loop.path);
+    for (; n < loops.size(); ++n) {
+        split_chords_of_both(sliced, whole);
+        is_used.resize(whole.surface.n_vertices(), false);
+        std::vector<int> sources = vertices_of(sliced.surface, crossing);
+        for (const auto& split : sliced.surface.splits()) sources.push_back(split.vertex);
+        std::vector<Loop> found;
+        LoopPool pool(sliced, projector);
+        for (double limit = 1.2 * loops[n].length;; limit *= 1.5) {
+            const bool is_last = limit > 100.0 * loops[n].length;
+            pool.search(sources, is_last ? unlimited : limit);
+            found = pool.shortest(kind, 1, chosen);
+            if (is_last || (!found.empty() && found.front().length <= limit)) break;
+        }
+        if (found.empty()) {
+            // Narrow places are passed at vertices that no crossing loop has.
+            std::vector<int> all(sliced.surface.n_vertices());
+            std::iota(all.begin(), all.end(), 0);
+            pool.search(all, unlimited);
+            found = pool.shortest(kind, 1, chosen);
+        }
+        if (found.empty()) {
+            throw TopologyError(
+                "handle and tunnel loops: no {} loop number {} of {} that stays clear of the "
+                "others; the surface is too coarse there: refine it",
+                kind == Kind::handle ? "handle" : "tunnel", n + 1, loops.size());
+        }
+        accept(found.front());
+        sliced.surface.slice(found.front().path);
+    }
+    return disjoint;
+}
+
+// Vertices of a loop on a surface some of whose edges were split after the loop was found.
+HomologyLoop finish(const CutSurface& surface, const std::vector<int>& vertices, const Loop& loop) {
+    std::map<std::pair<int, int>, int> middle;
+    for (const auto& split : surface.splits()) {
+        middle[{std::min(split.from, split.to), std::max(split.from, split.to)}] = split.vertex;
+    }
+    HomologyLoop finished{.vertices = {}, .length = 0.0, .homology_class = loop.homology_class};
+    const std::function<void(int, int)> add = [&](int from, int to) {
+        const auto split = middle.find({std::min(from, to), std::max(from, to)});
+        if (split == middle.end()) {
+            finished.vertices.push_back(from);
+            finished.length += (surface.point(to) - surface.point(from)).norm();
+            return;
+        }
+        add(from, split->second);
+        add(split->second, to);
+    };
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        add(vertices[k], vertices[(k + 1) % vertices.size()]);
+    }
+    return finished;
+}
+
+std::vector<std::vector<int>> loop_vertices(const CutSurface& surface,
+                                            const std::vector<Loop>& loops) {
+    std::vector<std::vector<int>> vertices;
+    for (const Loop& loop : loops) {
+        auto& list = vertices.emplace_back();
+        for (const int h : loop.path) list.push_back(surface.origin(h));
+    }
+    return vertices;
+}
+
+}  // namespace
+
+HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
+    HandleTunnelLoops result;
+    result.surface = surface;
+    result.surface.split_chords();
+    HomologyBasis basis = make_homology_basis(close_with_caps(result.surface));
+    result.genus = basis.genus;
+    if (basis.genus == 0) return result;
+    result.projector = linking_projector(basis);
+
+    // Loops keep off the caps: their triangles come behind the others.
+    AnnotatedSurface annotated = std::move(basis.annotated);
+    annotated.surface = result.surface;
+    annotated.annotation.resize(annotated.surface.n_halfedges());
+    std::set<int> on_basis;
+    for (const auto& loop : basis.loops) {
+        for (const int h : loop) {
+            if (h < annotated.surface.n_halfedges()) on_basis.insert(annotated.surface.origin(h));
+        }
+    }
+    const std::vector<int> all_sources(on_basis.begin(), on_basis.end());
+
+    constexpr std::size_t n_first_sources = 64;
+    LoopPool pool(annotated, result.projector);
+    pool.search(sample(all_sources, n_first_sources), unlimited);
+    std::vector<Loop> handles = pool.shortest(Kind::handle, basis.genus, {});
+    std::vector<Loop> tunnels = pool.shortest(Kind::tunnel, basis.genus, {});
+    const auto is_short = [&](const std::vector<Loop>& loops) {
+        return static_cast<int>(loops.size()) < basis.genus;
+    };
+    if (is_short(handles) || is_short(tunnels)) {
+        pool.search(all_sources, unlimited);
+        handles = pool.shortest(Kind::handle, basis.genus, {});
+        tunnels = pool.shortest(Kind::tunnel, basis.genus, {});
+    }
+    constexpr std::size_t n_covering_sources = 8;
+    const auto covering_sources = sample(all_sources, n_covering_sources);
+    if (is_short(handles)) {
+        add_knotted(annotated, result.projector, Kind::handle, covering_sources, handles);
+    }
+    if (is_short(tunnels)) {
+        add_knotted(annotated, result.projector, Kind::tunnel, covering_sources, tunnels);
+    }
+
+    // Each kind crosses the other: shorter ones are looked for from there.
+    constexpr int n_rounds = 3;
+    const auto improve = [&](std::vector<Loop>& loops, const std::vector<Loop>& crossing,
+                             Kind kind) {
+        pool.search(vertices_of(annotated.surface, crossing), longest_of(loops));
+        const auto shorter = pool.shortest(kind, basis.genus, {});
+        if (is_short(shorter) || longest_of(shorter) >= longest_of(loops)) {
+            const auto total = [](const std::vector<Loop>& list) {
+                return std::accumulate(list.begin(), list.end(), 0.0,
+                                       [](double sum, const Loop& l) { return sum + l.length; });
+            };
+            if (is_short(shorter) || total(shorter) >= total(loops)) return false;
+        }
+        loops = shorter;
+        return true;
+    };
+    for (int round = 0; round < n_rounds; ++round) {
+        const bool has_better_handles = improve(handles, tunnels, Kind::handle);
+        const bool has_better_tunnels = improve(tunnels, handles, Kind::tunnel);
+        if (!has_better_handles && !has_better_tunnels) break;
+    }
+
+    const auto first_tunnel_vertices = loop_vertices(annotated.surface, tunnels);
+    const std::vector<Loop> disjoint_handles =
+        make_disjoint(annotated, result.projector, Kind::handle, handles, tunnels);
+    const auto handle_vertices = loop_vertices(annotated.surface, disjoint_handles);
+    // Handles may have split edges of tunnels.
+    for (std::size_t i = 0; i < tunnels.size(); ++i) {
+        const auto vertices =
+            finish(annotated.surface, first_tunnel_vertices[i], tunnels[i]).vertices;
+        tunnels[i].path.clear();
+        for (std::size_t k = 0; k < vertices.size(); ++k) {
+            tunnels[i].path.push_back(
+                annotated.surface.find_halfedge(vertices[k], vertices[(k + 1) % vertices.size()]));
+        }
+    }
+    const std::vector<Loop> disjoint_tunnels =
+        make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, handles);
+    const auto tunnel_vertices = loop_vertices(annotated.surface, disjoint_tunnels);
+    result.surface = std::move(annotated.surface);
+    IntegerMatrix rows;
+    for (int i = 0; i < basis.genus; ++i) {
+        result.handles.push_back(finish(result.surface, handle_vertices[i], disjoint_handles[i]));
+        const Class& c = disjoint_handles[i].homology_class;
+        rows.emplace_back(c.begin(), c.end());
+    }
+    for (int i = 0; i < basis.genus; ++i) {
+        result.tunnels.push_back(finish(result.surface, tunnel_vertices[i], disjoint_tunnels[i]));
+        const Class& c = disjoint_tunnels[i].homology_class;
+        rows.emplace_back(c.begin(), c.end());
+    }
+    result.determinant = determinant(rows);
+    if (std::llabs(result.determinant) != 1) {
+        throw TopologyError(
+            "handle and tunnel loops: their classes have determinant {}; they must form an integer "
+            "basis of homology",
+            result.determinant);
+    }
+    const auto by_length = [](const HomologyLoop& a, const HomologyLoop& b) {
+        return a.length < b.length;
+    };
+    std::stable_sort(result.handles.begin(), result.handles.end(), by_length);
+    std::stable_sort(result.tunnels.begin(), result.tunnels.end(), by_length);
+    return result;
+}
+
+}  // namespace couture::meshing

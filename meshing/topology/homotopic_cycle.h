@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "meshing/surface/cut_surface.h"
+
+namespace couture::meshing {
+
+/// A simple closed path on a piece that, with boundary loops i and j, bounds a pant.
+struct HomotopicCycle {
+    /// The piece, cut open to find the cycle, some edges split to let it pass.
+    CutSurface surface;
+    /// Original vertices of `surface` (CutSurface::original) in order, with loops i and j on the
+    /// left; the first one does not stand again at the end.
+    std::vector<int> vertices;
+    /// Path from loop i to loop j around which the cycle runs; vertices of the piece that was
+    /// given.
+    std::vector<int> path;
+    /// Length times factors.
+    double weight = 0.0;
+};
+
+/// Cycles around two boundary loops of a piece of genus 0 at a time: w_ij homotopic to w_i p w_j
+/// p^-1, p the shortest path from loop i to loop j.
+///
+/// The piece is cut along p and along shortest paths that join the other loops; what is left is a
+/// cylinder, on which the shortest closed path around is found by halving: one from the middle of a
+/// shortest path between the ends divides the cylinder in two. O(n log^2 n) each. The cycle touches
+/// no boundary of the piece.
+///
+/// Source: [Maquart19] Alg. 3.2; [Reif83] for the halving. Differs: the text takes all paths
+/// between opposite points one by one.
+class HomotopicCycles {
+  public:
+    /// @param piece   connected, genus 0, without chords (CutSurface::split_chords), at least three
+    ///                boundary loops
+    /// @param factor  for each vertex a positive factor on lengths; empty: 1
+    /// @throws TopologyError  if the piece is of another kind
+    explicit HomotopicCycles(const CutSurface& piece, std::vector<double> factor = {});
+
+    /// Boundary loops, see CutSurface::boundary_loops.
+    [[nodiscard]] const std::vector<std::vector<int>>& loops() const { return loops_; }
+
+    /// The cycle around loops i and j.
+    ///
+    /// @throws InputError     if i = j or one does not exist
+    /// @throws TopologyError  if there is none
+    [[nodiscard]] HomotopicCycle find(int i, int j) const;
+
+  private:
+    [[nodiscard]] std::optional<HomotopicCycle> find_on(CutSurface surface, int i, int j,
+                                                        bool may_touch_cuts) const;
+
+    const CutSurface* piece_;
+    std::vector<double> factor_;
+    std::vector<std::vector<int>> loops_;
+    /// Loop of each boundary vertex of the piece, or -1.
+    std::vector<int> loop_of_vertex_;
+    /// For each pair i < j the shortest path from i to j, as halfedges.
+    std::vector<std::vector<std::vector<int>>> paths_;
+};
+
+}  // namespace couture::meshing
