@@ -192,8 +192,9 @@ void CutSurface::split_vertex(int v, std::vector<int>& outgoing) {
 void CutSurface::slice(std::span<const int> path) {
     if (path.empty()) return;
     std::vector<int> vertices;
-    for (const int h : path) vertices.push_back(origin(h));
-    if (target(path.back()) != vertices.front()) vertices.push_back(target(path.back()));
+    for (const int h : path) vertices.insert(vertices.end(), {origin(h), target(h)});
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::vector<std::vector<int>> fans(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const int first = outgoing_[vertices[i]];

@@ -93,9 +93,9 @@ class CutSurface {
     /// by a path inside, if the piece is connected.
     void split_chords();
 
-    /// Opens the surface along a path of halfedges, each of which starts where the one before it
-    /// ends, and which all have a twin. The ends may lie on the boundary; a path that ends where it
-    /// starts is opened all around. A path must not touch itself elsewhere.
+    /// Opens the surface along a path of halfedges, or any set of them that have a twin, no two on
+    /// one edge. A vertex is divided into as many as it has fans of triangles afterwards: at the
+    /// ends of a path only if they lie on the boundary already.
     void slice(std::span<const int> path);
 
     /// Boundary loops, each as halfedges in order with the surface on the left; in the order of

@@ -40,11 +40,18 @@ int ShortestPaths::run(const Search& search) {
         state.is_settled = true;
         settled_.push_back(v);
         if (search.is_target != nullptr && (*search.is_target)[v]) return v;
-        if (state.arrival >= 0 && search.is_blocked != nullptr && (*search.is_blocked)[v]) continue;
+        if (state.arrival != -1 && search.is_blocked != nullptr && (*search.is_blocked)[v])
+            continue;
         const int first = surface_->outgoing(v);
         for (int h = first; h >= 0;) {
-            if (surface_->twin(h) >= 0) offer(surface_->target(h), distance + weight(h), h);
+            if (surface_->twin(h) >= 0 || search.takes_boundary_edges) {
+                offer(surface_->target(h), distance + weight(h), h);
+            }
+            const int behind = CutSurface::previous(h);
             h = surface_->rotated(h);
+            if (h < 0 && search.takes_boundary_edges) {
+                offer(surface_->origin(behind), distance + weight(behind), -2 - behind);
+            }
             if (h == first) break;
         }
     }
@@ -53,11 +60,20 @@ int ShortestPaths::run(const Search& search) {
 
 std::vector<int> ShortestPaths::path_to(int v) const {
     std::vector<int> path;
-    for (int h = state_[v].arrival; h >= 0; h = state_[surface_->origin(h)].arrival) {
-        path.push_back(h);
+    for (int h = state_[v].arrival; h != -1; h = state_[before(h)].arrival) {
+        if (h >= 0 && surface_->twin(h) >= 0) path.push_back(h);
     }
     std::reverse(path.begin(), path.end());
     return path;
+}
+
+std::vector<int> ShortestPaths::vertices_to(int v) const {
+    std::vector<int> vertices{v};
+    for (int h = state_[v].arrival; h != -1; h = state_[vertices.back()].arrival) {
+        vertices.push_back(before(h));
+    }
+    std::reverse(vertices.begin(), vertices.end());
+    return vertices;
 }
 
 }  // namespace couture::meshing

@@ -13,7 +13,7 @@ namespace couture::meshing {
 /// searches; each costs what it touches. Among equal distances the smaller vertex number is settled
 /// first, so that the same input gives the same paths.
 ///
-/// Edges along the boundary are never part of a path.
+/// Edges along the boundary are part of a path only if the search says so.
 ///
 /// Source: [Dijkstra59].
 class ShortestPaths {
@@ -28,6 +28,8 @@ class ShortestPaths {
         const std::vector<char>* is_target = nullptr;
         /// Vertices farther away are not settled.
         double limit = std::numeric_limits<double>::infinity();
+        /// Whether paths may run along the boundary.
+        bool takes_boundary_edges = false;
     };
 
     /// @param factor  for each vertex a positive factor on lengths, taken as the mean over an edge;
@@ -46,21 +48,29 @@ class ShortestPaths {
                    ? state_[v].distance
                    : std::numeric_limits<double>::infinity();
     }
-    /// Last halfedge of the path to v; -1 at a source and for what was not settled.
+    /// Last halfedge of the path to v; -1 at a source and for what was not settled. Not for
+    /// searches that take boundary edges.
     [[nodiscard]] int arrival(int v) const { return state_[v].arrival; }
     /// Settled vertices by distance.
     [[nodiscard]] const std::vector<int>& settled() const { return settled_; }
-    /// Halfedges from a source to v.
+    /// Halfedges from a source to v, those along the boundary left out.
     [[nodiscard]] std::vector<int> path_to(int v) const;
+    /// Vertices from a source to v, both included.
+    [[nodiscard]] std::vector<int> vertices_to(int v) const;
     /// Length of a halfedge with its factor.
     [[nodiscard]] double weight(int h) const;
 
   private:
     struct State {
         double distance = std::numeric_limits<double>::infinity();
+        // -2 - h: along boundary halfedge h, from its target to its origin.
         int arrival = -1;
         bool is_settled = false;
     };
+
+    [[nodiscard]] int before(int arrival) const {
+        return arrival >= 0 ? surface_->origin(arrival) : surface_->target(-2 - arrival);
+    }
 
     const CutSurface* surface_;
     const std::vector<double>* factor_;

@@ -26,6 +26,19 @@ struct Cutting {
         surface.split_chords();
         extend_factors();
     }
+    // Splits the edges that end on the boundary: a ring of vertices around it.
+    void split_spokes() {
+        const int n = surface.n_vertices();
+        for (int h = 0; h < surface.n_halfedges(); ++h) {
+            if (surface.twin(h) < h || std::max(surface.origin(h), surface.target(h)) >= n)
+                continue;
+            if (surface.is_boundary_vertex(surface.origin(h)) ||
+                surface.is_boundary_vertex(surface.target(h))) {
+                surface.split_edge(h);
+            }
+        }
+        extend_factors();
+    }
     [[nodiscard]] ShortestPaths paths() const {
         return ShortestPaths(surface, factor.empty() ? nullptr : &factor);
     }
@@ -136,15 +149,18 @@ class CycleAround {
         const int source = surface.origin(left_[middle]);
         const int target = surface.target(right_[middle]);
         is_target_[target] = 1;
-        const int reached = paths_.run(
-            {.sources = {&source, 1}, .is_blocked = &is_blocked_, .is_target = &is_target_});
+        const int reached = paths_.run({.sources = {&source, 1},
+                                        .is_blocked = &is_blocked_,
+                                        .is_target = &is_target_,
+                                        .takes_boundary_edges = true});
         is_target_[target] = 0;
         if (reached >= 0) {
             const std::vector<int> path = paths_.path_to(reached);
             if (paths_.distance(reached) < best_weight_) {
                 best_weight_ = paths_.distance(reached);
-                best_.clear();
-                for (const int h : path) best_.push_back(surface.original(surface.origin(h)));
+                best_ = paths_.vertices_to(reached);
+                best_.pop_back();
+                for (int& v : best_) v = surface.original(v);
             }
             // The halves are apart from now on. A vertex that becomes a copy keeps its block.
             const int n = surface.n_vertices();
@@ -219,9 +235,10 @@ HomotopicCycle HomotopicCycles::find(int i, int j) const {
                          n - 1);
     }
     const auto [low, high] = std::minmax({i, j});
-    auto cycle = find_on(*piece_, low, high, true);
-    // In narrow places the cycle must pass beside the cuts.
-    if (!cycle) cycle = find_on(*piece_, low, high, false);
+    std::optional<HomotopicCycle> cycle;
+    for (const Room room : {Room::at_cuts, Room::beside_cuts, Room::made}) {
+        if (!cycle) cycle = find_on(*piece_, low, high, room);
+    }
     if (!cycle) {
         throw TopologyError("homotopic cycle: no closed path around boundary loops {} and {}", i,
                             j);
@@ -230,7 +247,7 @@ HomotopicCycle HomotopicCycles::find(int i, int j) const {
 }
 
 std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i, int j,
-                                                       bool may_touch_cuts) const {
+                                                       Room room) const {
     Cutting cutting{std::move(surface), factor_};
     const std::vector<int>& path = paths_[i][j];
     if (path.empty()) return std::nullopt;
@@ -239,7 +256,7 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
     cycle.path.push_back(cutting.surface.target(path.back()));
 
     cutting.slice(path);
-    if (!may_touch_cuts) cutting.split_chords();
+    if (room != Room::at_cuts) cutting.split_chords();
     std::vector<std::vector<int>> others;
     for (std::size_t k = 0; k < loops_.size(); ++k) {
         if (static_cast<int>(k) == i || static_cast<int>(k) == j) continue;
@@ -249,7 +266,8 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
     for (const auto& connection : connecting_paths(cutting, others)) {
         cutting.slice(unopened(cutting.surface, connection));
     }
-    if (!may_touch_cuts) cutting.split_chords();
+    if (room != Room::at_cuts) cutting.split_chords();
+    if (room == Room::made) cutting.split_spokes();
 
     // The shortest path between the two ends of the cylinder.
     const auto ends = cutting.surface.boundary_loops();
@@ -273,7 +291,7 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
     for (const int h : gamma) opposite.push_back(cutting.surface.twin(h));
 
     // The cycle keeps off the piece's own boundary, and off the cuts if it must.
-    if (may_touch_cuts) {
+    if (room == Room::at_cuts) {
         for (int v = 0; v < cutting.surface.n_vertices(); ++v) {
             const int original = cutting.surface.original(v);
             is_blocked[v] = original < piece_->n_vertices() && piece_->is_boundary_vertex(original);

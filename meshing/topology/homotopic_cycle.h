@@ -50,8 +50,12 @@ class HomotopicCycles {
     [[nodiscard]] HomotopicCycle find(int i, int j) const;
 
   private:
+    /// Where the cycle may run: on the cuts that make the cylinder; between them, chords split; or
+    /// with a ring of vertices put around them, for the narrowest places.
+    enum class Room { at_cuts, beside_cuts, made };
+
     [[nodiscard]] std::optional<HomotopicCycle> find_on(CutSurface surface, int i, int j,
-                                                        bool may_touch_cuts) const;
+                                                        Room room) const;
 
     const CutSurface* piece_;
     std::vector<double> factor_;

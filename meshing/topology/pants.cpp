@@ -1,0 +1,306 @@
+#include "meshing/topology/pants.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "iga/core/error.h"
+#include "meshing/topology/handle_tunnel_loops.h"
+#include "meshing/topology/homotopic_cycle.h"
+#include "meshing/topology/invariants.h"
+
+namespace couture::meshing {
+
+namespace {
+
+// Costs that differ by less are equal: rounding decides nothing.
+constexpr double same_score = 1e-9;
+
+class Decomposer {
+  public:
+    Decomposer(SurfaceMesh& mesh, const PantsOptions& options)
+        : mesh_(mesh),
+          options_(options),
+          planes_(planes()),
+          cycle_criterion_(mesh, options.cycle, planes_, "criterion of the cycle"),
+          merge_criterion_(mesh, options.merge, planes_, "criterion of the merge") {}
+
+    PantsDecomposition run() {
+        const SurfaceInvariants invariants = compute_invariants(mesh_);
+        if (invariants.n_components != 1) {
+            throw TopologyError("pants: the surface has {} components; it must be in one piece",
+                                invariants.n_components);
+        }
+        for (const auto edge : mesh_.edges()) {
+            if (mesh_.data(edge).curve >= 0) {
+                throw TopologyError("pants: edge {} belongs to curve {} already; take a fresh mesh",
+                                    edge.idx(), mesh_.data(edge).curve);
+            }
+        }
+        result_.genus = invariants.genus;
+        for (const BoundaryLoop& loop : boundary_loops(mesh_)) {
+            add_curve({.kind = PantsCurveKind::boundary,
+                       .curve = {loop.vertices, true},
+                       .length = loop.length,
+                       .around = std::nullopt});
+        }
+        split_chords_between_curves(mesh_);
+        cut_handles(invariants.euler_characteristic < 0);
+        rest_.assign(mesh_.faces_begin(), mesh_.faces_end());
+        if (invariants.euler_characteristic < 0) {
+            const int n_pants = -invariants.euler_characteristic;
+            for (int i = 1; i < n_pants; ++i) {
+                report("cutting into pants", static_cast<double>(i - 1) / n_pants);
+                cut_off_pant();
+            }
+        }
+        finish(invariants);
+        return std::move(result_);
+    }
+
+  private:
+    // A cycle that was found, by vertices of the mesh or points of its own.
+    struct Candidate {
+        double score = 0.0;
+        // Vertices of the mesh on the cycle and on the path that it runs around.
+        std::set<int> passed;
+    };
+    using Pair = std::array<CurveSide, 2>;
+
+    [[nodiscard]] std::vector<SymmetryPlane> planes() const {
+        const bool wanted = options_.cycle.symmetry > 0.0 || options_.merge.symmetry > 0.0;
+        return wanted ? find_symmetry_planes(mesh_) : std::vector<SymmetryPlane>{};
+    }
+
+    void report(std::string_view what, double fraction) const {
+        if (options_.progress) options_.progress(what, fraction);
+    }
+
+    int add_curve(PantsCurve curve) {
+        const int number = static_cast<int>(result_.curves.size());
+        if (curve.kind != PantsCurveKind::boundary) {
+            mark_curve(mesh_, curve.curve, number);
+            curve.length = curve_length(mesh_, curve.curve);
+        }
+        // Both sides are known by the halfedges along them.
+        for (const HalfedgeHandle h : curve_halfedges(mesh_, curve.curve)) {
+            side_of_[h.idx()] = {number, true};
+            side_of_[mesh_.opposite_halfedge_handle(h).idx()] = {number, false};
+        }
+        result_.curves.push_back(std::move(curve));
+        return number;
+    }
+
+    void cut_handles(bool are_cuts) {
+        if (result_.genus == 0) return;
+        report("looking for handle and tunnel loops", 0.0);
+        const std::vector<FaceHandle> faces(mesh_.faces_begin(), mesh_.faces_end());
+        const HandleTunnelLoops loops = find_handle_tunnel_loops(
+            CutSurface(mesh_, faces, std::vector<bool>(mesh_.n_edges(), false)));
+        const auto handles = embed_splits(mesh_, loops.surface);
+        for (const HomologyLoop& loop : loops.tunnels) {
+            auto& points = result_.tunnels.emplace_back();
+            for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
+        }
+        // A torus is a patch of its own.
+        if (!are_cuts) return;
+        for (const HomologyLoop& loop : loops.handles) {
+            SurfaceCurve curve;
+            for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
+            add_curve({.kind = PantsCurveKind::handle,
+                       .curve = std::move(curve),
+                       .length = 0.0,
+                       .around = std::nullopt});
+        }
+        split_chords_between_curves(mesh_);
+    }
+
+    [[nodiscard]] CurveSide side_of(const CutSurface& piece, const std::vector<int>& loop) const {
+        const int h = loop.front();
+        const HalfedgeHandle halfedge =
+            mesh_.find_halfedge(VertexHandle(piece.parent(piece.origin(h))),
+                                VertexHandle(piece.parent(piece.target(h))));
+        return side_of_.at(halfedge.idx());
+    }
+
+    [[nodiscard]] std::vector<double> factors(const CutSurface& piece) const {
+        if (cycle_criterion_.is_plain_length()) return {};
+        std::vector<double> factor;
+        for (int v = 0; v < piece.n_vertices(); ++v) {
+            factor.push_back(
+                cycle_criterion_.factor(mesh_.data(VertexHandle(piece.parent(v))).source));
+        }
+        return factor;
+    }
+
+    // Factors of the merge's criterion at the vertices of a cycle; splits take the mean of the
+    // ends.
+    [[nodiscard]] double score(const HomotopicCycle& cycle) const {
+        const CutSurface& surface = cycle.surface;
+        std::map<int, double> of_split;
+        const auto factor = [&](int v) {
+            v = surface.original(v);
+            return surface.parent(v) >= 0
+                       ? merge_criterion_.factor(mesh_.data(VertexHandle(surface.parent(v))).source)
+                       : of_split.at(v);
+        };
+        for (const auto& split : surface.splits()) {
+            of_split[split.vertex] =
+                (1.0 - split.fraction) * factor(split.from) + split.fraction * factor(split.to);
+        }
+        std::vector<double> factors;
+        std::vector<Vector3> points;
+        for (const int v : cycle.vertices) {
+            factors.push_back(factor(v));
+            points.push_back(surface.point(v));
+        }
+        return merge_criterion_.score(factors, points);
+    }
+
+    void cut_off_pant() {
+        const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
+        const HomotopicCycles cycles(piece, factors(piece));
+        std::vector<std::pair<CurveSide, int>> sides;
+        for (std::size_t i = 0; i < cycles.loops().size(); ++i) {
+            sides.emplace_back(side_of(piece, cycles.loops()[i]), static_cast<int>(i));
+        }
+        std::sort(sides.begin(), sides.end());
+        std::map<Pair, Candidate> known;
+        std::optional<Pair> best;
+        std::array<int, 2> best_loops{};
+        double best_score = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            for (std::size_t j = i + 1; j < sides.size(); ++j) {
+                const Pair pair{sides[i].first, sides[j].first};
+                auto entry = candidates_.extract(pair);
+                if (entry.empty()) {
+                    const HomotopicCycle cycle = cycles.find(sides[i].second, sides[j].second);
+                    known[pair] = {score(cycle), passed(piece, cycle)};
+                } else {
+                    known[pair] = std::move(entry.mapped());
+                }
+                const double found = known[pair].score;
+                if (found < best_score - same_score * std::abs(best_score) || !best) {
+                    best = pair;
+                    best_loops = {sides[i].second, sides[j].second};
+                    best_score = found;
+                }
+            }
+        }
+        candidates_ = std::move(known);
+
+        const HomotopicCycle cycle = cycles.find(best_loops[0], best_loops[1]);
+        const auto vertices = embed_splits(mesh_, cycle.surface);
+        SurfaceCurve curve;
+        for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
+        const int number = add_curve({.kind = PantsCurveKind::cycle,
+                                      .curve = std::move(curve),
+                                      .length = 0.0,
+                                      .around = *best});
+        split_chords_between_curves(mesh_);
+        remove_pant(number);
+    }
+
+    [[nodiscard]] std::set<int> passed(const CutSurface& piece, const HomotopicCycle& cycle) const {
+        std::set<int> vertices;
+        const auto add = [&](const CutSurface& surface, int v) {
+            if (surface.parent(v) >= 0) vertices.insert(surface.parent(v));
+        };
+        for (const int v : cycle.vertices) add(cycle.surface, v);
+        for (const int v : cycle.path) add(piece, v);
+        for (const auto& split : cycle.surface.splits()) {
+            add(cycle.surface, split.from);
+            add(cycle.surface, split.to);
+        }
+        return vertices;
+    }
+
+    // The pant lies left of the new cycle; what is left of the surface, right of it.
+    void remove_pant(int number) {
+        const std::vector<int> region = regions_between_curves(mesh_);
+        const HalfedgeHandle h = curve_halfedges(mesh_, result_.curves[number].curve).front();
+        const int pant = region[mesh_.face_handle(h).idx()];
+        const int rest = region[mesh_.face_handle(mesh_.opposite_halfedge_handle(h)).idx()];
+        if (pant == rest) {
+            throw TopologyError("pants: cycle {} does not divide the surface", number);
+        }
+        rest_.clear();
+        std::set<int> gone;
+        for (const auto face : mesh_.faces()) {
+            if (region[face.idx()] == rest) rest_.push_back(face);
+            if (region[face.idx()] != pant) continue;
+            for (const VertexHandle vertex : face_vertices(mesh_, face)) gone.insert(vertex.idx());
+        }
+        std::erase_if(candidates_, [&](const auto& entry) {
+            return std::any_of(entry.second.passed.begin(), entry.second.passed.end(),
+                               [&](int v) { return gone.contains(v); });
+        });
+    }
+
+    void finish(const SurfaceInvariants& invariants) {
+        result_.patch_of_face = regions_between_curves(mesh_);
+        const std::vector<FaceHandle> faces(mesh_.faces_begin(), mesh_.faces_end());
+        const CutSurface all(mesh_, faces, curve_seams(mesh_));
+        const auto component = all.face_components();
+        const int n_patches = 1 + *std::max_element(component.begin(), component.end());
+        std::vector<std::vector<FaceHandle>> faces_of(n_patches);
+        for (const auto face : mesh_.faces()) {
+            faces_of[result_.patch_of_face[face.idx()]].push_back(face);
+        }
+        for (int p = 0; p < n_patches; ++p) {
+            const CutSurface piece(mesh_, faces_of[p], curve_seams(mesh_));
+            PantsPatch patch;
+            for (const auto& loop : piece.boundary_loops()) {
+                patch.boundary.push_back(side_of(piece, loop));
+            }
+            std::sort(patch.boundary.begin(), patch.boundary.end());
+            patch.genus =
+                (2 - piece.euler_characteristic() - static_cast<int>(patch.boundary.size())) / 2;
+            if (invariants.euler_characteristic < 0 && patch.euler_characteristic() != -1) {
+                throw TopologyError(
+                    "pants: patch {} has genus {} and {} boundary loops; it must have genus 0 and "
+                    "3",
+                    p, patch.genus, patch.boundary.size());
+            }
+            result_.patches.push_back(std::move(patch));
+        }
+        if (invariants.euler_characteristic >= 0) return;
+        const PantsCount count = count_pants(invariants.genus, invariants.n_boundaries);
+        const int n_curves = static_cast<int>(result_.curves.size()) - invariants.n_boundaries;
+        if (n_patches != count.n_pants || n_curves != count.n_curves) {
+            throw TopologyError("pants: {} pants and {} curves; there must be {} and {}", n_patches,
+                                n_curves, count.n_pants, count.n_curves);
+        }
+    }
+
+    SurfaceMesh& mesh_;
+    const PantsOptions& options_;
+    std::vector<SymmetryPlane> planes_;
+    CutCriterion cycle_criterion_;
+    CutCriterion merge_criterion_;
+    PantsDecomposition result_;
+    std::map<int, CurveSide> side_of_;
+    std::vector<FaceHandle> rest_;
+    std::map<Pair, Candidate> candidates_;
+};
+
+}  // namespace
+
+std::string_view to_string(PantsCurveKind kind) {
+    switch (kind) {
+        case PantsCurveKind::boundary:
+            return "boundary";
+        case PantsCurveKind::handle:
+            return "handle";
+        case PantsCurveKind::cycle:
+            return "cycle";
+    }
+    return "";
+}
+
+PantsDecomposition decompose_into_pants(SurfaceMesh& mesh, const PantsOptions& options) {
+    return Decomposer(mesh, options).run();
+}
+
+}  // namespace couture::meshing
