@@ -13,8 +13,9 @@ namespace couture::meshing {
 /// edges and sliced along paths. Vertices on a seam have one copy on each side.
 ///
 /// Halfedge h belongs to triangle h / 3 and has it on its left; `twin(h)` is the one along the same
-/// edge in the neighbouring triangle, -1 on the boundary. Numbers never change: splitting and
-/// slicing only add vertices and triangles.
+/// edge in the neighbouring triangle, -1 on the boundary. Vertices and triangles keep their
+/// numbers: splitting and slicing only add some. A split moves the halfedge behind the one that is
+/// split to a new triangle: keep vertices, not halfedges, where edges may be split.
 class CutSurface {
   public:
     CutSurface() = default;

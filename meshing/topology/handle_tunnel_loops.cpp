@@ -25,10 +25,11 @@ using Class = std::vector<int>;
 
 enum class Kind { handle, tunnel };
 
-// Closed path of halfedges.
+// Closed path of halfedges, good until edges are split; its vertices are good for ever.
 struct Loop {
     double length = 0.0;
     std::vector<int> path;
+    std::vector<int> vertices;
     Class homology_class;
 };
 
@@ -180,7 +181,10 @@ class LoopPool {
         for (std::size_t k = back.size(); k-- > n_common;) {
             loop.path.push_back(surface.twin(back[k]));
         }
-        for (const int h : loop.path) loop.length += surface.length(h);
+        for (const int h : loop.path) {
+            loop.length += surface.length(h);
+            loop.vertices.push_back(surface.origin(h));
+        }
         loop.homology_class = annotated_.class_of(loop.path);
         return loop;
     }
@@ -288,6 +292,7 @@ class CoveringSearch {
             state = states_.at({v, state.class_before});
         }
         std::reverse(loop.path.begin(), loop.path.end());
+        for (const int h : loop.path) loop.vertices.push_back(annotated_.surface.origin(h));
         return loop;
     }
 
@@ -314,11 +319,9 @@ std::vector<int> sample(const std::vector<int>& numbers, std::size_t n) {
     return chosen;
 }
 
-std::vector<int> vertices_of(const CutSurface& surface, const std::vector<Loop>& loops) {
+std::vector<int> vertices_of(const std::vector<Loop>& loops) {
     std::set<int> vertices;
-    for (const Loop& loop : loops) {
-        for (const int h : loop.path) vertices.insert(surface.origin(h));
-    }
+    for (const Loop& loop : loops) vertices.insert(loop.vertices.begin(), loop.vertices.end());
     return {vertices.begin(), vertices.end()};
 }
 
@@ -387,15 +390,18 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
     std::vector<Loop> disjoint;
     std::vector<bool> is_used(whole.surface.n_vertices(), false);
     IntegerMatrix chosen;
-    const auto accept = [&](const Loop& loop) {
-        for (const int h : loop.path) is_used[whole.surface.origin(h)] = true;
+    const auto accept = [&](Loop loop) {
+        // Halfedges are the same on both surfaces, vertices are not.
+        loop.vertices.clear();
+        for (const int h : loop.path) loop.vertices.push_back(whole.surface.origin(h));
+        for (const int v : loop.vertices) is_used[v] = true;
         chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
-        disjoint.push_back(loop);
+        disjoint.push_back(std::move(loop));
     };
     std::size_t n = 0;
     for (; n < loops.size(); ++n) {
-        const bool meets = std::any_of(loops[n].path.begin(), loops[n].path.end(),
-                                       [&](int h) { return is_used[whole.surface.origin(h)]; });
+        const bool meets = std::any_of(loops[n].vertices.begin(), loops[n].vertices.end(),
+                                       [&](int v) { return is_used[v]; });
         if (meets) break;
         accept(loops[n]);
     }
@@ -406,7 +412,7 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
     for (; n < loops.size(); ++n) {
         split_chords_of_both(sliced, whole);
         is_used.resize(whole.surface.n_vertices(), false);
-        std::vector<int> sources = vertices_of(sliced.surface, crossing);
+        std::vector<int> sources = vertices_of(crossing);
         for (const auto& split : sliced.surface.splits()) sources.push_back(split.vertex);
         std::vector<Loop> found;
         LoopPool pool(sliced, projector);
@@ -436,7 +442,8 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
 }
 
 // Vertices of a loop on a surface some of whose edges were split after the loop was found.
-HomologyLoop finish(const CutSurface& surface, const std::vector<int>& vertices, const Loop& loop) {
+HomologyLoop finish(const CutSurface& surface, const Loop& loop) {
+    const std::vector<int>& vertices = loop.vertices;
     std::map<std::pair<int, int>, int> middle;
     for (const auto& split : surface.splits()) {
         middle[{std::min(split.from, split.to), std::max(split.from, split.to)}] = split.vertex;
@@ -456,16 +463,6 @@ HomologyLoop finish(const CutSurface& surface, const std::vector<int>& vertices,
         add(vertices[k], vertices[(k + 1) % vertices.size()]);
     }
     return finished;
-}
-
-std::vector<std::vector<int>> loop_vertices(const CutSurface& surface,
-                                            const std::vector<Loop>& loops) {
-    std::vector<std::vector<int>> vertices;
-    for (const Loop& loop : loops) {
-        auto& list = vertices.emplace_back();
-        for (const int h : loop.path) list.push_back(surface.origin(h));
-    }
-    return vertices;
 }
 
 }  // namespace
@@ -517,7 +514,7 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
     constexpr int n_rounds = 3;
     const auto improve = [&](std::vector<Loop>& loops, const std::vector<Loop>& crossing,
                              Kind kind) {
-        pool.search(vertices_of(annotated.surface, crossing), longest_of(loops));
+        pool.search(vertices_of(crossing), longest_of(loops));
         const auto shorter = pool.shortest(kind, basis.genus, {});
         if (is_short(shorter) || longest_of(shorter) >= longest_of(loops)) {
             const auto total = [](const std::vector<Loop>& list) {
@@ -535,14 +532,12 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
         if (!has_better_handles && !has_better_tunnels) break;
     }
 
-    const auto first_tunnel_vertices = loop_vertices(annotated.surface, tunnels);
     const std::vector<Loop> disjoint_handles =
         make_disjoint(annotated, result.projector, Kind::handle, handles, tunnels);
-    const auto handle_vertices = loop_vertices(annotated.surface, disjoint_handles);
     // Handles may have split edges of tunnels.
     for (std::size_t i = 0; i < tunnels.size(); ++i) {
-        const auto vertices =
-            finish(annotated.surface, first_tunnel_vertices[i], tunnels[i]).vertices;
+        const auto vertices = finish(annotated.surface, tunnels[i]).vertices;
+        tunnels[i].vertices = vertices;
         tunnels[i].path.clear();
         for (std::size_t k = 0; k < vertices.size(); ++k) {
             tunnels[i].path.push_back(
@@ -551,16 +546,15 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
     }
     const std::vector<Loop> disjoint_tunnels =
         make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, handles);
-    const auto tunnel_vertices = loop_vertices(annotated.surface, disjoint_tunnels);
     result.surface = std::move(annotated.surface);
     IntegerMatrix rows;
     for (int i = 0; i < basis.genus; ++i) {
-        result.handles.push_back(finish(result.surface, handle_vertices[i], disjoint_handles[i]));
+        result.handles.push_back(finish(result.surface, disjoint_handles[i]));
         const Class& c = disjoint_handles[i].homology_class;
         rows.emplace_back(c.begin(), c.end());
     }
     for (int i = 0; i < basis.genus; ++i) {
-        result.tunnels.push_back(finish(result.surface, tunnel_vertices[i], disjoint_tunnels[i]));
+        result.tunnels.push_back(finish(result.surface, disjoint_tunnels[i]));
         const Class& c = disjoint_tunnels[i].homology_class;
         rows.emplace_back(c.begin(), c.end());
     }

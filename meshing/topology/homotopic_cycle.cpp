@@ -261,7 +261,7 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
     for (std::size_t k = 0; k < loops_.size(); ++k) {
         if (static_cast<int>(k) == i || static_cast<int>(k) == j) continue;
         auto& vertices = others.emplace_back();
-        for (const int h : loops_[k]) vertices.push_back(cutting.surface.origin(h));
+        for (const int h : loops_[k]) vertices.push_back(piece_->origin(h));
     }
     for (const auto& connection : connecting_paths(cutting, others)) {
         cutting.slice(unopened(cutting.surface, connection));
@@ -273,9 +273,10 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
     const auto ends = cutting.surface.boundary_loops();
     if (ends.size() != 2 || cutting.surface.euler_characteristic() != 0) return std::nullopt;
     std::vector<char> is_blocked = boundary_vertices(cutting.surface);
-    const int some_of_i = loops_[i].front();
-    const bool first_is_inner =
-        std::find(ends[0].begin(), ends[0].end(), some_of_i) != ends[0].end();
+    const bool first_is_inner = std::any_of(ends[0].begin(), ends[0].end(), [&](int h) {
+        const int original = cutting.surface.original(cutting.surface.origin(h));
+        return original < piece_->n_vertices() && loop_of_vertex_[original] == i;
+    });
     const auto& inner = ends[first_is_inner ? 0 : 1];
     const auto& outer = ends[first_is_inner ? 1 : 0];
     std::vector<int> sources;
