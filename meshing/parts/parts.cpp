@@ -39,23 +39,14 @@ const std::vector<PartDefinition>& definitions() {
     return all;
 }
 
-[[noreturn]] void throw_unknown(const std::string& who, const std::string& kind,
-                                const std::string& name, const std::vector<std::string>& names) {
+}  // namespace
+
+void throw_unknown(const std::string& who, const std::string& kind, const std::string& name,
+                   const std::vector<std::string>& names) {
     const auto nearest = nearest_name(name, names);
     throw InputError("{}: unknown {} '{}'; {}there are: {}", who, kind, name,
                      nearest ? fmt::format("did you mean '{}'? ", *nearest) : "",
                      fmt::join(names, ", "));
-}
-
-const PartDefinition& find_definition(const std::string& name) {
-    std::vector<std::string> names;
-    for (const PartDefinition& definition : definitions()) {
-        if (definition.info.name == name) {
-            return definition;
-        }
-        names.push_back(definition.info.name);
-    }
-    throw_unknown("make_part", "part", name, names);
 }
 
 PartValues complete_values(const PartInfo& info, const std::map<std::string, double>& given) {
@@ -81,8 +72,6 @@ PartValues complete_values(const PartInfo& info, const std::map<std::string, dou
     }
     return values;
 }
-
-}  // namespace
 
 PartParameter length_parameter(std::string name, double value, std::string meaning) {
     constexpr double smallest = 1e-3;
@@ -111,7 +100,7 @@ const std::vector<PartInfo>& parts() {
 }
 
 Part make_part(const std::string& name, const std::map<std::string, double>& parameters) {
-    const PartDefinition& definition = find_definition(name);
+    const PartDefinition& definition = find_definition("make_part", definitions(), name);
     return definition.make(complete_values(definition.info, parameters));
 }
 
