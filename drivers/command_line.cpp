@@ -91,6 +91,24 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                       [&command, solve] { return run_check(*solve, command.common); });
     add_deck_options(sub, *solve);
 
+    const auto mesh = std::make_shared<MeshOptions>();
+    sub = add_command(app, command, "mesh", "cut a surface into pants",
+                      [&command, mesh] { return run_mesh(*mesh, command.common); });
+    sub->add_option("surface", mesh->surface,
+                    "a surface file (.stl, .obj, .off), or the name of a part (wheel, seal, ...)")
+        ->required();
+    sub->add_option("--stage", mesh->stage,
+                    "the last stage: surface, features, loops, pants (default)");
+    sub->add_option("--set", mesh->overrides, "a dimension of the part: NAME=VALUE");
+    sub->add_option("--edge-length", mesh->edge_length, "of the part's triangles");
+    sub->add_option("--feature-angle", mesh->feature_angle,
+                    "angle between faces from which an edge is sharp, in degrees (default: 40)");
+    sub->add_option("--cycle", mesh->cycle_weights,
+                    "what makes a cut short: length=1, symmetry=, curvature=, sharp=");
+    sub->add_option("--merge", mesh->merge_weights, "which cut comes first: the same terms");
+    sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
+    sub->add_flag("--png", mesh->png, "draw every stage");
+
     sub = add_command(app, command, "info", "say what a spline file holds",
                       [&command, from] { return run_info(*from, command.common); });
     sub->add_option("file", *from, "a spline file")->required();

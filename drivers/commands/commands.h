@@ -30,6 +30,25 @@ struct SolveOptions {
     bool resume = false;
 };
 
+struct MeshOptions {
+    /// A surface file, or the name of a part.
+    std::string surface;
+    /// The last stage that is made: surface, features, loops or pants.
+    std::string stage = "pants";
+    /// Dimensions of a part: name=value.
+    std::vector<std::string> overrides;
+    /// Terms of the criteria of pants: name=weight.
+    std::vector<std::string> cycle_weights;
+    std::vector<std::string> merge_weights;
+    /// Degrees.
+    double feature_angle = 40.0;
+    /// Edge length of a part's triangles; 0: its default.
+    double edge_length = 0.0;
+    /// Empty: out/<name> below the working folder.
+    std::filesystem::path out;
+    bool png = false;
+};
+
 struct CompareOptions {
     std::filesystem::path first;
     std::filesystem::path second;
@@ -52,6 +71,7 @@ struct VerifyOptions {
 /// Each returns the exit code and throws what is wrong.
 int run_solve(const SolveOptions& options, const CommonOptions& common);
 int run_check(const SolveOptions& options, const CommonOptions& common);
+int run_mesh(const MeshOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& file, const CommonOptions& common);
 int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
                 const CommonOptions& common);

@@ -1,0 +1,214 @@
+#include "drivers/mesh_stages.h"
+
+#include <algorithm>
+#include <array>
+
+#include "iga/core/error.h"
+#include "io/did_you_mean.h"
+#include "io/picture.h"
+#include "io/surface_writer.h"
+#include "meshing/surface/curvature.h"
+
+namespace couture::drivers {
+
+namespace {
+
+using namespace meshing;
+
+constexpr std::array<const char*, 4> stage_names{"surface", "features", "loops", "pants"};
+
+// Kinds of curves in files; pants curves have those of PantsCurveKind.
+constexpr int tunnel_kind = 4;
+constexpr int feature_kind = 5;
+
+io::Color color_of_kind(int kind) {
+    switch (kind) {
+        case static_cast<int>(PantsCurveKind::handle):
+            return {0.84, 0.15, 0.16};
+        case static_cast<int>(PantsCurveKind::cycle):
+            return {0.0, 0.62, 0.85};
+        case tunnel_kind:
+            return {0.13, 0.63, 0.20};
+        default:
+            return {0.12, 0.14, 0.17};
+    }
+}
+
+io::SurfaceLine make_line(const SurfaceMesh& mesh, const std::vector<VertexHandle>& vertices,
+                          bool is_closed, int kind, int number) {
+    io::SurfaceLine line{.points = {}, .is_closed = is_closed, .kind = kind, .number = number};
+    for (const VertexHandle vertex : vertices) line.points.push_back(mesh.point(vertex));
+    return line;
+}
+
+std::vector<io::SurfaceLine> lines_of(const MeshStages& stages, MeshStage stage) {
+    std::vector<io::SurfaceLine> lines;
+    if (stage == MeshStage::features) {
+        for (const FeatureCurve& curve : stages.features.curves) {
+            lines.push_back(make_line(stages.mesh, curve.vertices, curve.is_closed, feature_kind,
+                                      static_cast<int>(lines.size())));
+        }
+    }
+    if (!stages.pants) return lines;
+    for (std::size_t c = 0; c < stages.pants->curves.size(); ++c) {
+        const PantsCurve& curve = stages.pants->curves[c];
+        const bool is_shown = stage == MeshStage::pants ||
+                              (stage == MeshStage::loops && curve.kind != PantsCurveKind::cycle);
+        if (!is_shown) continue;
+        lines.push_back(make_line(stages.mesh, curve.curve.vertices, true,
+                                  static_cast<int>(curve.kind), static_cast<int>(c)));
+    }
+    if (stage == MeshStage::loops) {
+        for (std::size_t t = 0; t < stages.pants->tunnels.size(); ++t) {
+            lines.push_back({.points = stages.pants->tunnels[t],
+                             .is_closed = true,
+                             .kind = tunnel_kind,
+                             .number = static_cast<int>(t)});
+        }
+    }
+    return lines;
+}
+
+// For each face the number of what has a colour of its own at a stage.
+std::vector<int> part_of_face(const MeshStages& stages, MeshStage stage) {
+    std::vector<int> part(stages.mesh.n_faces(), 0);
+    for (const auto face : stages.mesh.faces()) {
+        if (stage == MeshStage::features) part[face.idx()] = stages.mesh.data(face).region;
+        if (stage == MeshStage::pants && stages.pants) {
+            part[face.idx()] = stages.pants->patch_of_face[face.idx()];
+        }
+    }
+    return part;
+}
+
+MatrixX column(const std::vector<double>& values) {
+    return Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+std::vector<io::SurfaceArray> curvature_arrays(const SurfaceMesh& mesh) {
+    const auto gaussian = gaussian_curvature(mesh);
+    const auto principal = principal_curvatures(mesh);
+    const auto n = static_cast<Eigen::Index>(gaussian.size());
+    MatrixX classes(n, 1);
+    MatrixX minimum(n, 1);
+    MatrixX maximum(n, 1);
+    MatrixX direction(n, 3);
+    for (Eigen::Index v = 0; v < n; ++v) {
+        classes(v, 0) = static_cast<double>(classify_curvature(gaussian[v]));
+        minimum(v, 0) = principal[v].minimum;
+        maximum(v, 0) = principal[v].maximum;
+        direction.row(v) = principal[v].minimum_direction.transpose();
+    }
+    return {{"gaussian_curvature", column(gaussian)},
+            {"geodesic_curvature", column(geodesic_curvature(mesh))},
+            {"curvature_class", classes},
+            {"minimum_curvature", minimum},
+            {"maximum_curvature", maximum},
+            {"minimum_direction", direction}};
+}
+
+io::Scene make_scene(const MeshStages& stages, MeshStage stage,
+                     const std::vector<io::SurfaceLine>& lines) {
+    const SurfaceMesh& mesh = stages.mesh;
+    const std::vector<int> part = part_of_face(stages, stage);
+    const int n_parts = part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end());
+    std::vector<std::vector<std::array<int, 3>>> triangles(n_parts);
+    for (const auto face : mesh.faces()) {
+        const auto [a, b, c] = face_vertices(mesh, face);
+        triangles[part[face.idx()]].push_back({a.idx(), b.idx(), c.idx()});
+    }
+    io::Scene scene;
+    std::vector<int> number(mesh.n_vertices(), -1);
+    for (int p = 0; p < n_parts; ++p) {
+        io::SurfacePiece piece;
+        std::vector<int> used;
+        piece.triangles.resize(static_cast<Eigen::Index>(triangles[p].size()), 3);
+        for (std::size_t t = 0; t < triangles[p].size(); ++t) {
+            for (int k = 0; k < 3; ++k) {
+                int& n = number[triangles[p][t][k]];
+                if (n < 0) {
+                    n = static_cast<int>(used.size());
+                    used.push_back(triangles[p][t][k]);
+                }
+                piece.triangles(static_cast<Eigen::Index>(t), k) = n;
+            }
+        }
+        piece.vertices.resize(static_cast<Eigen::Index>(used.size()), 3);
+        for (std::size_t v = 0; v < used.size(); ++v) {
+            piece.vertices.row(static_cast<Eigen::Index>(v)) =
+                mesh.point(VertexHandle(used[v])).transpose();
+            number[used[v]] = -1;
+        }
+        if (n_parts > 1) piece.color = io::part_color(p);
+        scene.surfaces.push_back(std::move(piece));
+    }
+    for (const io::SurfaceLine& line : lines) {
+        MatrixX points(static_cast<Eigen::Index>(line.points.size()), 3);
+        for (std::size_t k = 0; k < line.points.size(); ++k) {
+            points.row(static_cast<Eigen::Index>(k)) = line.points[k].transpose();
+        }
+        scene.curves.push_back({.points = std::move(points),
+                                .is_closed = line.is_closed,
+                                .color = color_of_kind(line.kind),
+                                .width = line.kind == feature_kind ? 2.2 : 5.0});
+    }
+    scene.title = to_string(stage);
+    return scene;
+}
+
+}  // namespace
+
+MeshStage read_mesh_stage(const std::string& name) {
+    for (std::size_t i = 0; i < stage_names.size(); ++i) {
+        if (name == stage_names[i]) return static_cast<MeshStage>(i);
+    }
+    const std::vector<std::string> names(stage_names.begin(), stage_names.end());
+    throw InputError("mesh: there is no stage '{}'{} There are {}", name,
+                     io::did_you_mean(name, names).empty() ? "." : io::did_you_mean(name, names),
+                     io::quoted_list(names));
+}
+
+std::string to_string(MeshStage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
+
+MeshStages run_mesh_stages(SurfaceMesh mesh, MeshStage last, const FeatureOptions& feature_options,
+                           const PantsOptions& pants_options) {
+    MeshStages stages;
+    stages.mesh = std::move(mesh);
+    stages.invariants = compute_invariants(stages.mesh);
+    stages.surface_name = surface_name(stages.mesh);
+    check_gauss_bonnet(stages.mesh);
+    if (last >= MeshStage::features) {
+        stages.features = detect_features(stages.mesh, feature_options);
+    }
+    if (last >= MeshStage::loops) {
+        stages.pants = decompose_into_pants(stages.mesh, pants_options);
+    }
+    return stages;
+}
+
+std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
+                                                    const MeshStages& stages, MeshStage stage,
+                                                    bool png, const std::string& provenance) {
+    const std::vector<io::SurfaceLine> lines = lines_of(stages, stage);
+    const std::vector<int> part = part_of_face(stages, stage);
+    std::vector<io::SurfaceArray> on_points;
+    std::vector<io::SurfaceArray> on_triangles;
+    if (stage == MeshStage::surface) on_points = curvature_arrays(stages.mesh);
+    if (stage == MeshStage::features || stage == MeshStage::pants) {
+        on_triangles.push_back({stage == MeshStage::features ? "region" : "patch",
+                                column(std::vector<double>(part.begin(), part.end()))});
+    }
+    std::filesystem::path vtp = stem;
+    vtp += ".vtp";
+    io::write_vtp(vtp, to_soup(stages.mesh), on_points, on_triangles, lines, provenance);
+    std::vector<std::filesystem::path> files{vtp};
+    if (png) {
+        std::filesystem::path picture = stem;
+        picture += ".png";
+        io::render_png(picture, make_scene(stages, stage, lines));
+        files.push_back(picture);
+    }
+    return files;
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meshing/surface/features.h"
+#include "meshing/surface/surface_mesh.h"
+#include "meshing/topology/invariants.h"
+#include "meshing/topology/pants.h"
+
+namespace couture::drivers {
+
+/// The stages of meshing, in order.
+enum class MeshStage { surface, features, loops, pants };
+
+/// @throws InputError  for a name that is no stage: names the nearest and lists all
+[[nodiscard]] MeshStage read_mesh_stage(const std::string& name);
+[[nodiscard]] std::string to_string(MeshStage stage);
+
+/// What the stages made of a surface.
+struct MeshStages {
+    meshing::SurfaceMesh mesh;
+    meshing::SurfaceInvariants invariants;
+    std::string surface_name;
+    meshing::Features features;
+    std::optional<meshing::PantsDecomposition> pants;
+};
+
+/// Runs the stages up to `last` on an oriented manifold.
+///
+/// @throws what the stages throw
+[[nodiscard]] MeshStages run_mesh_stages(meshing::SurfaceMesh mesh, MeshStage last,
+                                         const meshing::FeatureOptions& feature_options,
+                                         const meshing::PantsOptions& pants_options);
+
+/// Writes what a stage shows as STEM.vtp, and with `png` as STEM.png.
+///
+/// surface: Gaussian curvature and its class, principal curvatures; features: curves and smooth
+/// faces; loops: handle (kind 1) and tunnel loops (kind 4); pants: patches and all cuts (kind 0
+/// boundary, 1 handle, 2 cycle).
+///
+/// @return the files
+/// @throws FileError  if one can't be written
+std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
+                                                    const MeshStages& stages, MeshStage stage,
+                                                    bool png, const std::string& provenance);
+
+}  // namespace couture::drivers
