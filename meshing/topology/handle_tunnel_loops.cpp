@@ -333,22 +333,22 @@ double longest_of(const std::vector<Loop>& loops) {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Adds loops of knotted tubes until there are `genus`.
+// Adds loops of knotted tubes until there are so many.
 void add_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& projector, Kind kind,
-                 const std::vector<int>& sources, std::vector<Loop>& loops) {
-    const int genus = annotated.rank / 2;
+                 const std::vector<int>& sources, IntegerMatrix chosen, int n_wanted,
+                 std::vector<Loop>& loops) {
     long long largest_entry = 1;
     for (const auto& row : projector) {
         for (const long long entry : row)
             largest_entry = std::max(largest_entry, std::llabs(entry));
     }
-    IntegerMatrix chosen;
     for (const Loop& loop : loops) {
         chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
     }
     constexpr int n_doublings = 4;
     int largest = static_cast<int>(largest_entry) + 1;
-    for (int i = 0; i < n_doublings && static_cast<int>(loops.size()) < genus; ++i, largest *= 2) {
+    for (int i = 0; i < n_doublings && static_cast<int>(loops.size()) < n_wanted;
+         ++i, largest *= 2) {
         std::optional<Loop> best;
         for (const int source : sources) {
             if (annotated.surface.is_boundary_vertex(source)) continue;
@@ -365,11 +365,11 @@ void add_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& project
         --i;
         largest /= 2;
     }
-    if (static_cast<int>(loops.size()) < genus) {
+    if (static_cast<int>(loops.size()) < n_wanted) {
         throw TopologyError(
             "handle and tunnel loops: found {} {} loops of {}, with classes up to {}; the surface "
             "is knotted beyond that, or so coarse that no simple loop passes: refine it",
-            loops.size(), kind == Kind::handle ? "handle" : "tunnel", genus, largest);
+            loops.size(), kind == Kind::handle ? "handle" : "tunnel", n_wanted, largest);
     }
 }
 
@@ -385,11 +385,16 @@ void split_chords_of_both(AnnotatedSurface& sliced, AnnotatedSurface& whole) {
 // Replaces loops that meet earlier ones, the shortest first, by the shortest that don't.
 //
 // @param crossing  loops of the other kind
+// @param given     cuts that none may meet, with vertices and paths
+// @param chosen    classes that the loops extend to a primitive system
 std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& projector, Kind kind,
-                                const std::vector<Loop>& loops, const std::vector<Loop>& crossing) {
+                                const std::vector<Loop>& loops, const std::vector<Loop>& crossing,
+                                const std::vector<Loop>& given = {}, IntegerMatrix chosen = {}) {
     std::vector<Loop> disjoint;
     std::vector<bool> is_used(whole.surface.n_vertices(), false);
-    IntegerMatrix chosen;
+    for (const Loop& loop : given) {
+        for (const int v : loop.vertices) is_used[v] = true;
+    }
     const auto accept = [&](Loop loop) {
         // Halfedges are the same on both surfaces, vertices are not.
         loop.vertices.clear();
@@ -408,6 +413,7 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
     if (n == loops.size()) return disjoint;
 
     AnnotatedSurface sliced = whole;
+    for (const Loop& loop : given) sliced.surface.slice(loop.path);
     for (const Loop& loop : disjoint) sliced.surface.slice(loop.path);
     for (; n < loops.size(); ++n) {
         split_chords_of_both(sliced, whole);
@@ -465,15 +471,48 @@ HomologyLoop finish(const CutSurface& surface, const Loop& loop) {
     return finished;
 }
 
+// A cut that was made already; it must bound inside.
+Loop make_given_loop(const AnnotatedSurface& annotated, const IntegerMatrix& projector,
+                     const std::vector<int>& vertices, std::size_t number) {
+    Loop loop;
+    loop.vertices = vertices;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        const int h =
+            annotated.surface.find_halfedge(vertices[k], vertices[(k + 1) % vertices.size()]);
+        if (h < 0) {
+            throw TopologyError("handle and tunnel loops: cut {} is no path of inner edges",
+                                number);
+        }
+        loop.path.push_back(h);
+        loop.length += annotated.surface.length(h);
+    }
+    loop.homology_class = annotated.class_of(loop.path);
+    if (!is_of_kind(loop.homology_class, projector, Kind::handle)) {
+        const Vector3& x = annotated.surface.point(vertices.front());
+        throw TopologyError(
+            "handle and tunnel loops: cut {} through ({:.6g}, {:.6g}, {:.6g}) bounds no surface "
+            "inside the solid{}; a cut must, as the rim of a cross-section does",
+            number, x.x(), x.y(), x.z(),
+            is_of_kind(loop.homology_class, projector, Kind::tunnel)
+                ? ": it runs around a hole (a tunnel loop)"
+                : "");
+    }
+    return loop;
+}
+
 }  // namespace
 
-HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
+HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
+                                           std::span<const std::vector<int>> cuts) {
     HandleTunnelLoops result;
     result.surface = surface;
     result.surface.split_chords();
     HomologyBasis basis = make_homology_basis(close_with_caps(result.surface));
     result.genus = basis.genus;
-    if (basis.genus == 0) return result;
+    if (basis.genus == 0) {
+        result.is_handle_cut.assign(cuts.size(), false);
+        return result;
+    }
     result.projector = linking_projector(basis);
 
     // Loops keep off the caps: their triangles come behind the others.
@@ -487,27 +526,44 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
         }
     }
     const std::vector<int> all_sources(on_basis.begin(), on_basis.end());
+    std::vector<Loop> given;
+    IntegerMatrix given_classes;
+    for (const auto& vertices : cuts) {
+        given.push_back(make_given_loop(annotated, result.projector, vertices, given.size()));
+        const Class& c = given.back().homology_class;
+        given_classes.emplace_back(c.begin(), c.end());
+        result.is_handle_cut.push_back(!is_zero(c) && is_primitive(given_classes));
+        if (!result.is_handle_cut.back()) given_classes.pop_back();
+    }
+    const int n_handles = basis.genus - static_cast<int>(given_classes.size());
 
     constexpr std::size_t n_first_sources = 64;
     LoopPool pool(annotated, result.projector);
     pool.search(sample(all_sources, n_first_sources), unlimited);
-    std::vector<Loop> handles = pool.shortest(Kind::handle, basis.genus, {});
-    std::vector<Loop> tunnels = pool.shortest(Kind::tunnel, basis.genus, {});
-    const auto is_short = [&](const std::vector<Loop>& loops) {
-        return static_cast<int>(loops.size()) < basis.genus;
+    const auto n_of = [&](Kind kind) { return kind == Kind::handle ? n_handles : basis.genus; };
+    const auto shortest = [&](Kind kind) {
+        return pool.shortest(kind, n_of(kind),
+                             kind == Kind::handle ? given_classes : IntegerMatrix{});
     };
-    if (is_short(handles) || is_short(tunnels)) {
+    std::vector<Loop> handles = shortest(Kind::handle);
+    std::vector<Loop> tunnels = shortest(Kind::tunnel);
+    const auto is_short = [&](const std::vector<Loop>& loops, Kind kind) {
+        return static_cast<int>(loops.size()) < n_of(kind);
+    };
+    if (is_short(handles, Kind::handle) || is_short(tunnels, Kind::tunnel)) {
         pool.search(all_sources, unlimited);
-        handles = pool.shortest(Kind::handle, basis.genus, {});
-        tunnels = pool.shortest(Kind::tunnel, basis.genus, {});
+        handles = shortest(Kind::handle);
+        tunnels = shortest(Kind::tunnel);
     }
     constexpr std::size_t n_covering_sources = 8;
     const auto covering_sources = sample(all_sources, n_covering_sources);
-    if (is_short(handles)) {
-        add_knotted(annotated, result.projector, Kind::handle, covering_sources, handles);
+    if (is_short(handles, Kind::handle)) {
+        add_knotted(annotated, result.projector, Kind::handle, covering_sources, given_classes,
+                    n_handles, handles);
     }
-    if (is_short(tunnels)) {
-        add_knotted(annotated, result.projector, Kind::tunnel, covering_sources, tunnels);
+    if (is_short(tunnels, Kind::tunnel)) {
+        add_knotted(annotated, result.projector, Kind::tunnel, covering_sources, {}, basis.genus,
+                    tunnels);
     }
 
     // Each kind crosses the other: shorter ones are looked for from there.
@@ -515,13 +571,13 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
     const auto improve = [&](std::vector<Loop>& loops, const std::vector<Loop>& crossing,
                              Kind kind) {
         pool.search(vertices_of(crossing), longest_of(loops));
-        const auto shorter = pool.shortest(kind, basis.genus, {});
-        if (is_short(shorter) || longest_of(shorter) >= longest_of(loops)) {
+        const auto shorter = shortest(kind);
+        if (is_short(shorter, kind) || longest_of(shorter) >= longest_of(loops)) {
             const auto total = [](const std::vector<Loop>& list) {
                 return std::accumulate(list.begin(), list.end(), 0.0,
                                        [](double sum, const Loop& l) { return sum + l.length; });
             };
-            if (is_short(shorter) || total(shorter) >= total(loops)) return false;
+            if (is_short(shorter, kind) || total(shorter) >= total(loops)) return false;
         }
         loops = shorter;
         return true;
@@ -532,8 +588,8 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
         if (!has_better_handles && !has_better_tunnels) break;
     }
 
-    const std::vector<Loop> disjoint_handles =
-        make_disjoint(annotated, result.projector, Kind::handle, handles, tunnels);
+    const std::vector<Loop> disjoint_handles = make_disjoint(
+        annotated, result.projector, Kind::handle, handles, tunnels, given, given_classes);
     // Handles may have split edges of tunnels.
     for (std::size_t i = 0; i < tunnels.size(); ++i) {
         const auto vertices = finish(annotated.surface, tunnels[i]).vertices;
@@ -547,8 +603,8 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface) {
     const std::vector<Loop> disjoint_tunnels =
         make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, handles);
     result.surface = std::move(annotated.surface);
-    IntegerMatrix rows;
-    for (int i = 0; i < basis.genus; ++i) {
+    IntegerMatrix rows = given_classes;
+    for (int i = 0; i < n_handles; ++i) {
         result.handles.push_back(finish(result.surface, disjoint_handles[i]));
         const Class& c = disjoint_handles[i].homology_class;
         rows.emplace_back(c.begin(), c.end());

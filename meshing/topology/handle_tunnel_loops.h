@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "meshing/surface/cut_surface.h"
@@ -27,8 +28,11 @@ struct HandleTunnelLoops {
     std::vector<HomologyLoop> tunnels;
     /// Linking projector A: handles are the classes x with xA = 0, tunnels those with xA = x.
     IntegerMatrix projector;
-    /// Determinant of the classes of handles above those of tunnels, 1 or -1: together they are a
-    /// homology basis.
+    /// For each cut that was given whether it takes a handle off: whether its class is independent
+    /// of those before it.
+    std::vector<bool> is_handle_cut;
+    /// Determinant of the classes of cuts and handles above those of tunnels, 1 or -1: together
+    /// they are a homology basis.
     long long determinant = 1;
 };
 
@@ -41,12 +45,16 @@ struct HandleTunnelLoops {
 /// O(k n log n) for loops of k vertices.
 ///
 /// @param surface  connected, oriented outwards; holes are taken as closed by fans
+/// @param cuts     disjoint simple closed edge paths, by vertices in order, that bound inside the
+///                 solid: handles keep off them, and are fewer by the number of independent classes
+///                 that the cuts have
 /// @throws TopologyError  if the surface is not connected, or no solid's boundary (see
 ///                        linking_projector), or a knotted tube needs classes beyond what is
-///                        searched
+///                        searched, or a cut does not bound inside
 ///
 /// Source: [EricksonWhittlesey05]; [DeyLiSunCohenSteiner08]; [Maquart19] Sec. 2.1.2.4, 3.1.1.
 /// Differs: no Reeb graph; handles and tunnels are told apart by exact linking numbers.
-[[nodiscard]] HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface);
+[[nodiscard]] HandleTunnelLoops find_handle_tunnel_loops(
+    const CutSurface& surface, std::span<const std::vector<int>> cuts = {});
 
 }  // namespace couture::meshing

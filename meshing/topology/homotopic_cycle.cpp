@@ -8,67 +8,19 @@
 #include "iga/core/disjoint_sets.h"
 #include "iga/core/error.h"
 #include "meshing/surface/shortest_paths.h"
+#include "meshing/topology/cylinder_cycle.h"
 
 namespace couture::meshing {
 
 namespace {
-
-// A surface that is being cut, with factors for the vertices that come by splits and slices.
-struct Cutting {
-    CutSurface surface;
-    std::vector<double> factor;
-
-    void slice(const std::vector<int>& path) {
-        surface.slice(path);
-        extend_factors();
-    }
-    void split_chords() {
-        surface.split_chords();
-        extend_factors();
-    }
-    // Splits the edges that end on the boundary: a ring of vertices around it.
-    void split_spokes() {
-        const int n = surface.n_vertices();
-        for (int h = 0; h < surface.n_halfedges(); ++h) {
-            if (surface.twin(h) < h || std::max(surface.origin(h), surface.target(h)) >= n)
-                continue;
-            if (surface.is_boundary_vertex(surface.origin(h)) ||
-                surface.is_boundary_vertex(surface.target(h))) {
-                surface.split_edge(h);
-            }
-        }
-        extend_factors();
-    }
-    [[nodiscard]] ShortestPaths paths() const {
-        return ShortestPaths(surface, factor.empty() ? nullptr : &factor);
-    }
-
-  private:
-    void extend_factors() {
-        if (factor.empty()) return;
-        const auto n = static_cast<int>(factor.size());
-        factor.resize(surface.n_vertices());
-        for (const auto& split : surface.splits()) {
-            if (split.vertex < n) continue;
-            factor[split.vertex] =
-                (1.0 - split.fraction) * factor[split.from] + split.fraction * factor[split.to];
-        }
-        for (int v = n; v < surface.n_vertices(); ++v) factor[v] = factor[surface.original(v)];
-    }
-};
-
-std::vector<char> boundary_vertices(const CutSurface& surface) {
-    std::vector<char> is_boundary(surface.n_vertices());
-    for (int v = 0; v < surface.n_vertices(); ++v) is_boundary[v] = surface.is_boundary_vertex(v);
-    return is_boundary;
-}
 
 // Paths that join several sets of vertices to one: a minimum spanning tree of the shortest paths
 // between their Voronoi regions.
 //
 // Source: [Mehlhorn88].
 std::vector<std::vector<int>> connecting_paths(const Cutting& cutting,
-                                               const std::vector<std::vector<int>>& sets) {
+                                               const std::vector<std::vector<int>>& sets,
+                                               const std::vector<int>& avoided) {
     const CutSurface& surface = cutting.surface;
     std::vector<int> sources;
     std::vector<int> region(surface.n_vertices(), -1);
@@ -78,7 +30,8 @@ std::vector<std::vector<int>> connecting_paths(const Cutting& cutting,
             sources.push_back(v);
         }
     }
-    const std::vector<char> is_blocked = boundary_vertices(surface);
+    std::vector<char> is_blocked = boundary_vertices(surface);
+    for (const int v : avoided) is_blocked[v] = 1;
     ShortestPaths paths = cutting.paths();
     paths.run({.sources = sources, .is_blocked = &is_blocked});
     for (const int v : paths.settled()) {
@@ -118,73 +71,6 @@ std::vector<std::vector<int>> connecting_paths(const Cutting& cutting,
     return result;
 }
 
-// Shortest closed path around a cylinder that was cut along gamma: from the left to the right copy
-// of one of its inner vertices, found by halving.
-class CycleAround {
-  public:
-    // @param left     halfedges of gamma; their origins are the left copies
-    // @param right    their twins before the cut; their targets are the right copies
-    CycleAround(Cutting& cutting, const std::vector<int>& left, const std::vector<int>& right,
-                const std::vector<char>& is_blocked)
-        : cutting_(cutting),
-          left_(left),
-          right_(right),
-          is_blocked_(is_blocked),
-          paths_(cutting.paths()) {}
-
-    // Original vertices of the cycle, from left to right; empty if there is none.
-    [[nodiscard]] std::vector<int> find() {
-        search(1, static_cast<int>(left_.size()));
-        return best_;
-    }
-    [[nodiscard]] double weight() const { return best_weight_; }
-
-  private:
-    void search(int first, int end) {
-        if (first >= end) return;
-        const int middle = (first + end) / 2;
-        CutSurface& surface = cutting_.surface;
-        is_blocked_.resize(surface.n_vertices(), 0);
-        is_target_.resize(surface.n_vertices(), 0);
-        const int source = surface.origin(left_[middle]);
-        const int target = surface.target(right_[middle]);
-        is_target_[target] = 1;
-        const int reached = paths_.run({.sources = {&source, 1},
-                                        .is_blocked = &is_blocked_,
-                                        .is_target = &is_target_,
-                                        .takes_boundary_edges = true});
-        is_target_[target] = 0;
-        if (reached >= 0) {
-            const std::vector<int> path = paths_.path_to(reached);
-            if (paths_.distance(reached) < best_weight_) {
-                best_weight_ = paths_.distance(reached);
-                best_ = paths_.vertices_to(reached);
-                best_.pop_back();
-                for (int& v : best_) v = surface.original(v);
-            }
-            // The halves are apart from now on. A vertex that becomes a copy keeps its block.
-            const int n = surface.n_vertices();
-            cutting_.slice(path);
-            is_blocked_.resize(surface.n_vertices(), 0);
-            for (int v = n; v < surface.n_vertices(); ++v) {
-                is_blocked_[v] = is_blocked_[surface.original(v)];
-            }
-        }
-        search(first, middle);
-        search(middle + 1, end);
-    }
-
-    Cutting& cutting_;
-    const std::vector<int>& left_;
-    const std::vector<int>& right_;
-    std::vector<char> is_blocked_;
-    std::vector<char> is_target_;
-    // Used again for each search: its cost is what the search touches.
-    ShortestPaths paths_;
-    std::vector<int> best_;
-    double best_weight_ = std::numeric_limits<double>::infinity();
-};
-
 // The part of a path whose edges have not been opened yet.
 std::vector<int> unopened(const CutSurface& surface, const std::vector<int>& path) {
     std::vector<int> rest;
@@ -196,8 +82,12 @@ std::vector<int> unopened(const CutSurface& surface, const std::vector<int>& pat
 
 }  // namespace
 
-HomotopicCycles::HomotopicCycles(const CutSurface& piece, std::vector<double> factor)
-    : piece_(&piece), factor_(std::move(factor)), loops_(piece.boundary_loops()) {
+HomotopicCycles::HomotopicCycles(const CutSurface& piece, std::vector<double> factor,
+                                 std::vector<int> points)
+    : piece_(&piece),
+      factor_(std::move(factor)),
+      points_(std::move(points)),
+      loops_(piece.boundary_loops()) {
     const int n = static_cast<int>(loops_.size());
     const auto components = piece.face_components();
     if (*std::max_element(components.begin(), components.end()) > 0 ||
@@ -213,7 +103,16 @@ HomotopicCycles::HomotopicCycles(const CutSurface& piece, std::vector<double> fa
         for (const int h : loops_[i]) loop_of_vertex_[piece.origin(h)] = i;
     }
     const Cutting whole{piece, factor_};
-    const std::vector<char> is_blocked = boundary_vertices(piece);
+    std::vector<char> is_blocked = boundary_vertices(piece);
+    for (const int v : points_) {
+        if (is_blocked[v] != 0) {
+            throw InputError(
+                "homotopic cycle: vertex {} that it must pass lies on a boundary loop; cycles keep "
+                "off them, choose a point beside it",
+                v);
+        }
+    }
+    for (const int v : points_) is_blocked[v] = 1;
     ShortestPaths search = whole.paths();
     paths_.assign(n, std::vector<std::vector<int>>(n));
     for (int i = 0; i + 1 < n; ++i) {
@@ -240,8 +139,8 @@ HomotopicCycle HomotopicCycles::find(int i, int j) const {
         if (!cycle) cycle = find_on(*piece_, low, high, room);
     }
     if (!cycle) {
-        throw TopologyError("homotopic cycle: no closed path around boundary loops {} and {}", i,
-                            j);
+        throw TopologyError("homotopic cycle: no closed path around boundary loops {} and {}{}", i,
+                            j, points_.empty() ? "" : " through the points");
     }
     return *cycle;
 }
@@ -263,53 +162,35 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i
         auto& vertices = others.emplace_back();
         for (const int h : loops_[k]) vertices.push_back(piece_->origin(h));
     }
-    for (const auto& connection : connecting_paths(cutting, others)) {
+    for (const auto& connection : connecting_paths(cutting, others, points_)) {
         cutting.slice(unopened(cutting.surface, connection));
     }
     if (room != Room::at_cuts) cutting.split_chords();
     if (room == Room::made) cutting.split_spokes();
 
-    // The shortest path between the two ends of the cylinder.
     const auto ends = cutting.surface.boundary_loops();
     if (ends.size() != 2 || cutting.surface.euler_characteristic() != 0) return std::nullopt;
-    std::vector<char> is_blocked = boundary_vertices(cutting.surface);
     const bool first_is_inner = std::any_of(ends[0].begin(), ends[0].end(), [&](int h) {
         const int original = cutting.surface.original(cutting.surface.origin(h));
         return original < piece_->n_vertices() && loop_of_vertex_[original] == i;
     });
     const auto& inner = ends[first_is_inner ? 0 : 1];
     const auto& outer = ends[first_is_inner ? 1 : 0];
-    std::vector<int> sources;
-    for (const int h : inner) sources.push_back(cutting.surface.origin(h));
-    std::vector<char> is_target(cutting.surface.n_vertices(), 0);
-    for (const int h : outer) is_target[cutting.surface.origin(h)] = 1;
-    ShortestPaths search = cutting.paths();
-    const int reached =
-        search.run({.sources = sources, .is_blocked = &is_blocked, .is_target = &is_target});
-    if (reached < 0) return std::nullopt;
-    const std::vector<int> gamma = search.path_to(reached);
-    std::vector<int> opposite;
-    for (const int h : gamma) opposite.push_back(cutting.surface.twin(h));
-
-    // The cycle keeps off the piece's own boundary, and off the cuts if it must.
-    if (room == Room::at_cuts) {
-        for (int v = 0; v < cutting.surface.n_vertices(); ++v) {
+    std::optional<CylinderCycle> around;
+    if (points_.empty()) {
+        // The cycle keeps off the piece's own boundary, and off the cuts if it must.
+        std::vector<char> is_blocked = boundary_vertices(cutting.surface);
+        for (int v = 0; room == Room::at_cuts && v < cutting.surface.n_vertices(); ++v) {
             const int original = cutting.surface.original(v);
             is_blocked[v] = original < piece_->n_vertices() && piece_->is_boundary_vertex(original);
         }
+        around = find_cycle_around(cutting, inner, outer, std::move(is_blocked));
+    } else if (room != Room::at_cuts) {
+        around = find_cycle_through(cutting, inner, outer, points_);
     }
-    const int n = cutting.surface.n_vertices();
-    cutting.slice(gamma);
-    is_blocked.resize(cutting.surface.n_vertices());
-    for (int v = n; v < cutting.surface.n_vertices(); ++v) {
-        is_blocked[v] = is_blocked[cutting.surface.original(v)];
-    }
-    CycleAround around(cutting, gamma, opposite, is_blocked);
-    cycle.vertices = around.find();
-    cycle.weight = around.weight();
-    if (cycle.vertices.empty()) return std::nullopt;
-    std::set<int> seen(cycle.vertices.begin(), cycle.vertices.end());
-    if (seen.size() != cycle.vertices.size()) return std::nullopt;
+    if (!around) return std::nullopt;
+    cycle.vertices = std::move(around->vertices);
+    cycle.weight = around->weight;
     cycle.surface = std::move(cutting.surface);
     return cycle;
 }

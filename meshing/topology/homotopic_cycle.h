@@ -30,15 +30,18 @@ struct HomotopicCycle {
 /// shortest path between the ends divides the cylinder in two. O(n log^2 n) each. The cycle touches
 /// no boundary of the piece.
 ///
-/// Source: [Maquart19] Alg. 3.2; [Reif83] for the halving. Differs: the text takes all paths
+/// Source: [Maquart19] Alg. 3.2, 3.3; [Reif83] for the halving. Differs: the text takes all paths
 /// between opposite points one by one.
 class HomotopicCycles {
   public:
     /// @param piece   connected, genus 0, without chords (CutSurface::split_chords), at least three
     ///                boundary loops
     /// @param factor  for each vertex a positive factor on lengths; empty: 1
+    /// @param points  vertices that cycles pass (Alg. 3.3), see find_cycle_through
     /// @throws TopologyError  if the piece is of another kind
-    explicit HomotopicCycles(const CutSurface& piece, std::vector<double> factor = {});
+    /// @throws InputError     if one of the points lies on its boundary
+    explicit HomotopicCycles(const CutSurface& piece, std::vector<double> factor = {},
+                             std::vector<int> points = {});
 
     /// Boundary loops, see CutSurface::boundary_loops.
     [[nodiscard]] const std::vector<std::vector<int>>& loops() const { return loops_; }
@@ -59,6 +62,7 @@ class HomotopicCycles {
 
     const CutSurface* piece_;
     std::vector<double> factor_;
+    std::vector<int> points_;
     std::vector<std::vector<int>> loops_;
     /// Loop of each boundary vertex of the piece, or -1.
     std::vector<int> loop_of_vertex_;

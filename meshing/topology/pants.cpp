@@ -1,14 +1,19 @@
 #include "meshing/topology/pants.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "iga/core/error.h"
 #include "meshing/topology/handle_tunnel_loops.h"
 #include "meshing/topology/homotopic_cycle.h"
 #include "meshing/topology/invariants.h"
+#include "meshing/topology/n_pants.h"
 
 namespace couture::meshing {
 
@@ -39,23 +44,29 @@ class Decomposer {
             }
         }
         result_.genus = invariants.genus;
-        for (const BoundaryLoop& loop : boundary_loops(mesh_)) {
+        const auto loops = boundary_loops(mesh_);
+        for (const int b : boundary_order(loops.size())) {
+            const BoundaryLoop& loop = loops[b];
             add_curve({.kind = PantsCurveKind::boundary,
                        .curve = {loop.vertices, true},
                        .length = loop.length,
                        .around = std::nullopt});
         }
+        check_options(invariants.euler_characteristic);
         split_chords_between_curves(mesh_);
-        cut_handles(invariants.euler_characteristic < 0);
-        rest_.assign(mesh_.faces_begin(), mesh_.faces_end());
+        const std::size_t n_boundaries = result_.curves.size();
+        for (const GuideLoop& loop : options_.loops) add_loop(loop);
+        cut_handles(invariants.euler_characteristic < 0, n_boundaries);
         if (invariants.euler_characteristic < 0) {
-            const int n_pants = -invariants.euler_characteristic;
-            for (int i = 1; i < n_pants; ++i) {
-                report("cutting into pants", static_cast<double>(i - 1) / n_pants);
-                cut_off_pant();
-            }
+            n_pants_ = -invariants.euler_characteristic;
+            for (const auto& points : options_.cycles_through) cut_through(points);
+            cut_into_pants();
         }
         finish(invariants);
+        if (options_.most_boundaries > 3 && n_pants_ > 1) {
+            report("putting pants together", 0.0);
+            merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
+        }
         return std::move(result_);
     }
 
@@ -92,12 +103,78 @@ class Decomposer {
         return number;
     }
 
-    void cut_handles(bool are_cuts) {
+    void check_options(int euler_characteristic) const {
+        constexpr int most = 6;
+        if (options_.most_boundaries < 3 || options_.most_boundaries > most) {
+            throw InputError("pants: most_boundaries = {}; it must be 3 to {}",
+                             options_.most_boundaries, most);
+        }
+        for (const auto& [name, value] : {std::pair{"merge_ratio", options_.merge_ratio},
+                                          std::pair{"loop_width", options_.loop_width}}) {
+            if (!(value > 0.0) || !std::isfinite(value)) {
+                throw InputError("pants: {} = {}; it must be positive", name, value);
+            }
+        }
+        if (euler_characteristic >= 0 &&
+            !(options_.loops.empty() && options_.cycles_through.empty())) {
+            throw InputError(
+                "pants: loops or points are given, but the surface has Euler characteristic {}: a "
+                "sphere, disc, cylinder or torus is not cut into pants",
+                euler_characteristic);
+        }
+    }
+
+    [[nodiscard]] std::vector<int> boundary_order(std::size_t n) const {
+        std::vector<int> order(n);
+        std::iota(order.begin(), order.end(), 0);
+        if (options_.boundary_order.empty()) return order;
+        if (!std::is_permutation(order.begin(), order.end(), options_.boundary_order.begin(),
+                                 options_.boundary_order.end())) {
+            throw InputError("pants: boundary_order must name each of the {} boundary loops once",
+                             n);
+        }
+        return options_.boundary_order;
+    }
+
+    void add_loop(const GuideLoop& loop) {
+        report("following given loops", 0.0);
+        const double width = options_.loop_width * bounding_box_diagonal(mesh_);
+        SurfaceCurve curve;
+        try {
+            curve = trace_loop(mesh_, loop, width);
+        } catch (const InputError& error) {
+            throw InputError("pants: curve {}: {}", result_.curves.size(), error.what());
+        } catch (const TopologyError& error) {
+            throw TopologyError("pants: curve {}: {}", result_.curves.size(), error.what());
+        }
+        add_curve({.kind = PantsCurveKind::cycle,
+                   .curve = std::move(curve),
+                   .length = 0.0,
+                   .around = std::nullopt});
+        split_chords_between_curves(mesh_);
+    }
+
+    // Handles that keep off the curves there are, which get their kinds.
+    void cut_handles(bool are_cuts, std::size_t n_boundaries) {
         if (result_.genus == 0) return;
         report("looking for handle and tunnel loops", 0.0);
         const std::vector<FaceHandle> faces(mesh_.faces_begin(), mesh_.faces_end());
-        const HandleTunnelLoops loops = find_handle_tunnel_loops(
-            CutSurface(mesh_, faces, std::vector<bool>(mesh_.n_edges(), false)));
+        const CutSurface whole(mesh_, faces, std::vector<bool>(mesh_.n_edges(), false));
+        std::vector<int> number(mesh_.n_vertices(), -1);
+        for (int v = 0; v < whole.n_vertices(); ++v) number[whole.parent(v)] = v;
+        std::vector<std::vector<int>> cuts;
+        for (std::size_t c = n_boundaries; c < result_.curves.size(); ++c) {
+            auto& cut = cuts.emplace_back();
+            for (const VertexHandle v : result_.curves[c].curve.vertices) {
+                cut.push_back(number[v.idx()]);
+            }
+        }
+        const HandleTunnelLoops loops = find_handle_tunnel_loops(whole, cuts);
+        for (std::size_t c = 0; c < cuts.size(); ++c) {
+            if (loops.is_handle_cut[c]) {
+                result_.curves[n_boundaries + c].kind = PantsCurveKind::handle;
+            }
+        }
         const auto handles = embed_splits(mesh_, loops.surface);
         for (const HomologyLoop& loop : loops.tunnels) {
             auto& points = result_.tunnels.emplace_back();
@@ -105,6 +182,10 @@ class Decomposer {
         }
         // A torus is a patch of its own.
         if (!are_cuts) return;
+        if (options_.only_given_loops && !loops.handles.empty()) {
+            throw TopologyError("pants: the given loops leave {} of {} handles uncut",
+                                loops.handles.size(), result_.genus);
+        }
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve curve;
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
@@ -158,14 +239,59 @@ class Decomposer {
         return merge_criterion_.score(factors, points);
     }
 
+    using Sides = std::vector<std::pair<CurveSide, int>>;
+
+    // Boundary loops of a piece by the sides of curves that they are, in order, with their numbers.
+    [[nodiscard]] Sides sides_of(const CutSurface& piece,
+                                 const std::vector<std::vector<int>>& loops) const {
+        Sides sides;
+        for (std::size_t i = 0; i < loops.size(); ++i) {
+            sides.emplace_back(side_of(piece, loops[i]), static_cast<int>(i));
+        }
+        std::sort(sides.begin(), sides.end());
+        return sides;
+    }
+
+    // What lies between the curves, by the smallest face.
+    [[nodiscard]] std::vector<std::vector<FaceHandle>> pieces() const {
+        std::vector<std::vector<FaceHandle>> faces;
+        const std::vector<int> region = regions_between_curves(mesh_);
+        for (const auto face : mesh_.faces()) {
+            const auto r = static_cast<std::size_t>(region[face.idx()]);
+            if (r >= faces.size()) faces.resize(r + 1);
+            faces[r].push_back(face);
+        }
+        return faces;
+    }
+
+    void cut_into_pants() {
+        for (auto& faces : pieces()) {
+            rest_ = std::move(faces);
+            const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
+            const auto loops = piece.boundary_loops();
+            const int n = static_cast<int>(loops.size());
+            if (piece.euler_characteristic() >= 0) {
+                std::string names;
+                for (const auto& [side, loop] : sides_of(piece, loops)) {
+                    names += fmt::format("{}{}", names.empty() ? "" : ", ", side.curve);
+                }
+                throw TopologyError(
+                    "pants: {} by curve {}; a loop that is given must not bound a disc, nor run "
+                    "beside another curve",
+                    n == 1 ? "a disc is cut off" : "a cylinder is cut off", names);
+            }
+            for (int i = n; i > 3 && !options_.only_given_loops; --i) {
+                report("cutting into pants",
+                       std::min(1.0, static_cast<double>(n_cut_off_++) / n_pants_));
+                cut_off_pant();
+            }
+        }
+    }
+
     void cut_off_pant() {
         const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
         const HomotopicCycles cycles(piece, factors(piece));
-        std::vector<std::pair<CurveSide, int>> sides;
-        for (std::size_t i = 0; i < cycles.loops().size(); ++i) {
-            sides.emplace_back(side_of(piece, cycles.loops()[i]), static_cast<int>(i));
-        }
-        std::sort(sides.begin(), sides.end());
+        const Sides sides = sides_of(piece, cycles.loops());
         std::map<Pair, Candidate> known;
         std::optional<Pair> best;
         std::array<int, 2> best_loops{};
@@ -189,17 +315,85 @@ class Decomposer {
             }
         }
         candidates_ = std::move(known);
+        remove_pant(add_cycle(cycles.find(best_loops[0], best_loops[1]), *best));
+    }
 
-        const HomotopicCycle cycle = cycles.find(best_loops[0], best_loops[1]);
+    int add_cycle(const HomotopicCycle& cycle, const Pair& around) {
         const auto vertices = embed_splits(mesh_, cycle.surface);
         SurfaceCurve curve;
         for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
         const int number = add_curve({.kind = PantsCurveKind::cycle,
                                       .curve = std::move(curve),
                                       .length = 0.0,
-                                      .around = *best});
+                                      .around = around});
         split_chords_between_curves(mesh_);
-        remove_pant(number);
+        return number;
+    }
+
+    // The vertex nearest to a point, among those that lie on no curve.
+    [[nodiscard]] VertexHandle nearest_free(const Vector3& point) const {
+        const double limit = 0.1 * bounding_box_diagonal(mesh_);
+        std::vector<char> is_taken(mesh_.n_vertices(), 0);
+        for (const auto edge : mesh_.edges()) {
+            if (mesh_.data(edge).curve < 0 && !mesh_.is_boundary(edge)) continue;
+            const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
+            is_taken[mesh_.from_vertex_handle(h).idx()] = 1;
+            is_taken[mesh_.to_vertex_handle(h).idx()] = 1;
+        }
+        VertexHandle nearest;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto vertex : mesh_.vertices()) {
+            const double distance = (mesh_.point(vertex) - point).norm();
+            if (is_taken[vertex.idx()] != 0 || mesh_.is_isolated(vertex) || !(distance < least)) {
+                continue;
+            }
+            least = distance;
+            nearest = vertex;
+        }
+        if (!(least <= limit)) {
+            throw InputError(
+                "pants: point ({:.6g}, {:.6g}, {:.6g}) lies {:.3g} away from the surface; it must "
+                "be within a tenth of the diagonal, {:.3g}",
+                point.x(), point.y(), point.z(), least, limit);
+        }
+        return nearest;
+    }
+
+    // Cuts along the shortest cycle that passes some points, whichever loops it runs around.
+    void cut_through(const std::vector<Vector3>& points) {
+        report("cutting through given points", 0.0);
+        if (points.empty()) throw InputError("pants: a cycle through no points; give at least one");
+        std::set<int> wanted;
+        for (const Vector3& point : points) wanted.insert(nearest_free(point).idx());
+        std::optional<HomotopicCycle> best;
+        Pair around{};
+        for (const auto& faces : pieces()) {
+            const CutSurface piece(mesh_, faces, curve_seams(mesh_));
+            std::vector<int> inside;
+            for (int v = 0; v < piece.n_vertices(); ++v) {
+                if (wanted.contains(piece.parent(v))) inside.push_back(v);
+            }
+            if (inside.empty()) continue;
+            const auto loops = piece.boundary_loops();
+            if (inside.size() < wanted.size() || loops.size() < 4) {
+                throw TopologyError(
+                    "pants: no cycle passes all points near ({:.6g}, {:.6g}, {:.6g}): {}",
+                    points.front().x(), points.front().y(), points.front().z(),
+                    loops.size() < 4 ? "they lie in a pant already"
+                                     : "a curve divides them from each other");
+            }
+            const HomotopicCycles cycles(piece, factors(piece), inside);
+            const Sides sides = sides_of(piece, cycles.loops());
+            for (std::size_t i = 0; i < sides.size(); ++i) {
+                for (std::size_t j = i + 1; j < sides.size(); ++j) {
+                    HomotopicCycle cycle = cycles.find(sides[i].second, sides[j].second);
+                    if (best && cycle.weight >= (1.0 - same_score) * best->weight) continue;
+                    best = std::move(cycle);
+                    around = {sides[i].first, sides[j].first};
+                }
+            }
+        }
+        add_cycle(*best, around);
     }
 
     [[nodiscard]] std::set<int> passed(const CutSurface& piece, const HomotopicCycle& cycle) const {
@@ -257,7 +451,9 @@ class Decomposer {
             std::sort(patch.boundary.begin(), patch.boundary.end());
             patch.genus =
                 (2 - piece.euler_characteristic() - static_cast<int>(patch.boundary.size())) / 2;
-            if (invariants.euler_characteristic < 0 && patch.euler_characteristic() != -1) {
+            const bool is_n_pant = options_.only_given_loops && patch.genus == 0;
+            if (invariants.euler_characteristic < 0 && !is_n_pant &&
+                patch.euler_characteristic() != -1) {
                 throw TopologyError(
                     "pants: patch {} has genus {} and {} boundary loops; it must have genus 0 and "
                     "3",
@@ -265,7 +461,7 @@ class Decomposer {
             }
             result_.patches.push_back(std::move(patch));
         }
-        if (invariants.euler_characteristic >= 0) return;
+        if (invariants.euler_characteristic >= 0 || options_.only_given_loops) return;
         const PantsCount count = count_pants(invariants.genus, invariants.n_boundaries);
         const int n_curves = static_cast<int>(result_.curves.size()) - invariants.n_boundaries;
         if (n_patches != count.n_pants || n_curves != count.n_curves) {
@@ -282,6 +478,8 @@ class Decomposer {
     PantsDecomposition result_;
     std::map<int, CurveSide> side_of_;
     std::vector<FaceHandle> rest_;
+    int n_pants_ = 0;
+    int n_cut_off_ = 0;
     std::map<Pair, Candidate> candidates_;
 };
 

@@ -10,14 +10,16 @@
 #include "meshing/surface/surface_curves.h"
 #include "meshing/surface/surface_mesh.h"
 #include "meshing/topology/pants_criteria.h"
+#include "meshing/topology/traced_loop.h"
 
 namespace couture::meshing {
 
 enum class PantsCurveKind {
     /// Boundary loop of the surface.
     boundary,
+    /// Takes a handle off: does not divide what was left of the surface.
     handle,
-    /// Cycle around two boundary loops of what was left of the surface.
+    /// Divides what was left of the surface, once all handles are cut.
     cycle,
 };
 
@@ -36,12 +38,12 @@ struct PantsCurve {
     PantsCurveKind kind = PantsCurveKind::cycle;
     SurfaceCurve curve;
     double length = 0.0;
-    /// The two loops that a cycle runs around.
+    /// The two loops that a cycle runs around; none of handles and of loops that were given.
     std::optional<std::array<CurveSide, 2>> around;
 };
 
-/// A piece of genus 0 with three boundary loops; or, if the surface has no pants, a sphere, disc,
-/// cylinder or torus.
+/// A piece of genus 0 with three boundary loops, or with up to six; or, if the surface has no
+/// pants, a sphere, disc, cylinder or torus.
 struct PantsPatch {
     /// Sides of curves that bound it; a handle may do so with both.
     std::vector<CurveSide> boundary;
@@ -57,12 +59,31 @@ struct PantsOptions {
     CriterionWeights cycle = {};
     /// Which of the cycles is cut along first (Alg. 3.1).
     CriterionWeights merge = {};
+    /// Closed curves that are cut along first, in this order.
+    std::vector<GuideLoop> loops = {};
+    /// Distance from such a curve at which a detour costs double, by the diagonal of the surface's
+    /// box.
+    double loop_width = 0.02;
+    /// No cuts are added to the loops; what lies between them must have genus 0 and may have any
+    /// number of boundary loops.
+    bool only_given_loops = false;
+    /// Order of the boundary loops (see boundary_loops) among the curves; empty: as they are.
+    std::vector<int> boundary_order = {};
+    /// Points on the surface; for each list a cycle is made that passes them, around the two loops
+    /// for which it is shortest (Alg. 3.3).
+    std::vector<std::vector<Vector3>> cycles_through = {};
+    /// Pants are put together again to patches of up to so many boundary loops (3 to 6), where the
+    /// tube between them is short: see merge_ratio.
+    int most_boundaries = 3;
+    /// A cut is removed if the tube that it divides is shorter than so many of its diameters.
+    double merge_ratio = 1.0;
     /// Called with what is being done and how far it is, in [0, 1]; may throw to stop.
     std::function<void(std::string_view, double)> progress = {};
 };
 
 struct PantsDecomposition {
-    /// Boundary loops of the surface first, then handles, then cycles in the order of their making.
+    /// Boundary loops of the surface first, then loops that were given, handles, cycles in the
+    /// order of their making.
     /// The boundary has no numbers on its edges.
     std::vector<PantsCurve> curves;
     std::vector<PantsPatch> patches;
@@ -77,17 +98,21 @@ struct PantsDecomposition {
 /// cycle around two boundary loops. Curves are edge paths of the mesh, which is refined where they
 /// need room, and disjoint; their numbers stand on its edges.
 ///
-/// Number of pants = -chi, number of curves inside = 3 genus + boundaries - 3, both checked. A
-/// sphere, disc, cylinder or torus is one patch.
+/// Number of pants = -chi, number of curves inside = 3 genus + boundaries - 3, both checked before
+/// pants are put together to larger patches (n-pants: pants, shirt, suit, spacesuit). A sphere,
+/// disc, cylinder or torus is one patch.
 ///
 /// Cycles that score equal to 1e-9 are taken in the order of the curves they run around. After a
 /// cut only cycles that passed what was cut off are looked for again.
 ///
 /// @throws TopologyError  if the surface has several components or is no solid's boundary (see
 ///                        find_handle_tunnel_loops), or has curves already
-/// @throws InputError     for weights that are negative or all 0
+/// @throws InputError     for weights that are negative or all 0, other options out of their range,
+///                        and for loops and points that are not on the surface (see trace_loop)
+/// @throws TopologyError  for given loops that bound outside the solid, bound a disc or are
+///                        parallel to another cut, and for points through which no cycle passes
 ///
-/// Source: [Maquart19] Alg. 3.1, 3.2, Sec. 2.1.2.5.
+/// Source: [Maquart19] Alg. 3.1, 3.2, 3.3, Sec. 2.1.2.5.
 [[nodiscard]] PantsDecomposition decompose_into_pants(SurfaceMesh& mesh,
                                                       const PantsOptions& options = {});
 

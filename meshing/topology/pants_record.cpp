@@ -1,0 +1,250 @@
+#include "meshing/topology/pants_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "iga/core/error.h"
+#include "meshing/topology/invariants.h"
+
+namespace couture::meshing {
+
+namespace {
+
+constexpr int n_samples = 24;
+
+void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
+    low = Vector3::Constant(std::numeric_limits<double>::infinity());
+    high = -low;
+    for (const auto vertex : mesh.vertices()) {
+        if (mesh.is_isolated(vertex)) continue;
+        low = low.cwiseMin(mesh.point(vertex));
+        high = high.cwiseMax(mesh.point(vertex));
+    }
+}
+
+Vector3 vertex_normal(const SurfaceMesh& mesh, VertexHandle vertex) {
+    Vector3 normal = Vector3::Zero();
+    for (const FaceHandle face : mesh.vf_range(vertex)) {
+        normal += face_area(mesh, face) * face_normal(mesh, face);
+    }
+    return normal;
+}
+
+GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
+    const std::size_t n = curve.vertices.size();
+    const double step = curve_length(mesh, curve) / n_samples;
+    GuideLoop samples;
+    double gone = 0.0;
+    double next = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const VertexHandle a = curve.vertices[k];
+        const VertexHandle b = curve.vertices[(k + 1) % n];
+        const double length = (mesh.point(b) - mesh.point(a)).norm();
+        while (samples.points.size() < n_samples && next < gone + length) {
+            const double t = (next - gone) / length;
+            samples.points.emplace_back((1.0 - t) * mesh.point(a) + t * mesh.point(b));
+            samples.normals.push_back(
+                ((1.0 - t) * vertex_normal(mesh, a) + t * vertex_normal(mesh, b)).normalized());
+            next += step;
+        }
+        gone += length;
+    }
+    return samples;
+}
+
+// Carries points of one member over to another.
+class Warp {
+  public:
+    Warp(const PantsRecord& from, const SurfaceMesh& mesh, const Landmarks& landmarks)
+        : low_(from.box_min) {
+        Vector3 high;
+        measure_box(mesh, to_low_, high);
+        for (int i = 0; i < 3; ++i) {
+            const double size = from.box_max[i] - from.box_min[i];
+            scale_[i] = size > 0.0 ? (high[i] - to_low_[i]) / size : 1.0;
+        }
+        for (const auto& [name, x] : from.landmarks.corners) {
+            if (const auto other = landmarks.corners.find(name); other != landmarks.corners.end()) {
+                add(x, other->second);
+            }
+        }
+        const auto& closed = from.landmarks.closed_curves;
+        for (const auto& [name, points] : from.landmarks.curves) {
+            const auto other = landmarks.curves.find(name);
+            if (other == landmarks.curves.end() || other->second.size() != points.size()) continue;
+            const bool is_closed = std::find(closed.begin(), closed.end(), name) != closed.end();
+            add_curve(points, other->second, is_closed);
+        }
+    }
+
+    // By the boxes, and the weighted mean of how much that misses the landmarks.
+    [[nodiscard]] Vector3 operator()(const Vector3& x) const {
+        Vector3 sum = Vector3::Zero();
+        double weights = 0.0;
+        for (const auto& [place, miss] : misses_) {
+            const double squared = (x - place).squaredNorm();
+            if (squared == 0.0) return by_box(x) + miss;
+            const double weight = 1.0 / (squared * squared);
+            sum += weight * miss;
+            weights += weight;
+        }
+        return weights > 0.0 ? Vector3(by_box(x) + sum / weights) : by_box(x);
+    }
+
+  private:
+    [[nodiscard]] Vector3 by_box(const Vector3& x) const {
+        return to_low_ + scale_.cwiseProduct(x - low_);
+    }
+    void add(const Vector3& from, const Vector3& to) {
+        misses_.emplace_back(from, to - by_box(from));
+    }
+    // A closed curve may start anywhere and run either way, an open one start at either end: as
+    // near as can be.
+    void add_curve(const std::vector<Vector3>& from, const std::vector<Vector3>& to,
+                   bool is_closed) {
+        const int n = static_cast<int>(from.size());
+        double least = std::numeric_limits<double>::infinity();
+        std::vector<int> best;
+        for (const int direction : {1, -1}) {
+            for (int shift = 0; shift < (is_closed ? n : 1); ++shift) {
+                const int start = direction > 0 ? shift : n - 1 - shift;
+                std::vector<int> partner(n);
+                double sum = 0.0;
+                for (int k = 0; k < n; ++k) {
+                    partner[k] = ((start + direction * k) % n + n) % n;
+                    sum += (to[partner[k]] - by_box(from[k])).squaredNorm();
+                }
+                if (sum < least * (1.0 - 1e-9)) {
+                    least = sum;
+                    best = partner;
+                }
+            }
+        }
+        for (int k = 0; k < n; ++k) add(from[k], to[best[k]]);
+    }
+
+    Vector3 low_;
+    Vector3 to_low_ = Vector3::Zero();
+    Vector3 scale_ = Vector3::Ones();
+    std::vector<std::pair<Vector3, Vector3>> misses_;
+};
+
+// For each boundary of the record the loop of the member: by name, else the nearest.
+std::vector<int> match_boundaries(const PantsRecord& record, const SurfaceMesh& mesh,
+                                  const std::vector<std::string>& names, const Warp& warp) {
+    std::vector<const PantsRecord::Curve*> wanted;
+    for (const auto& curve : record.curves) {
+        if (curve.kind == PantsCurveKind::boundary) wanted.push_back(&curve);
+    }
+    const auto loops = boundary_loops(mesh);
+    if (loops.size() != wanted.size()) {
+        throw TopologyError(
+            "replay: the surface has {} boundary loops, the recorded one has {}; open the same "
+            "caps",
+            loops.size(), wanted.size());
+    }
+    std::vector<char> is_taken(loops.size(), 0);
+    std::vector<int> order;
+    for (std::size_t b = 0; b < wanted.size(); ++b) {
+        int match = -1;
+        double least = std::numeric_limits<double>::infinity();
+        const auto& points = wanted[b]->shape.points;
+        Vector3 center = Vector3::Zero();
+        for (const Vector3& x : points) center += warp(x) / static_cast<double>(points.size());
+        for (std::size_t k = 0; k < loops.size(); ++k) {
+            if (is_taken[k] != 0) continue;
+            const std::string name = k < names.size() ? names[k] : std::string();
+            if (name != wanted[b]->name) continue;
+            const double distance = (loops[k].center - center).norm();
+            if (distance < least) {
+                least = distance;
+                match = static_cast<int>(k);
+            }
+        }
+        if (match < 0) {
+            throw TopologyError("replay: no boundary loop of the surface is the cap '{}'",
+                                wanted[b]->name);
+        }
+        is_taken[match] = 1;
+        order.push_back(match);
+    }
+    return order;
+}
+
+// Brings the patches into the order of the record.
+void order_patches(PantsDecomposition& pants, const PantsRecord& record) {
+    std::vector<int> number(pants.patches.size(), -1);
+    for (std::size_t p = 0; p < pants.patches.size(); ++p) {
+        const auto known =
+            std::find(record.patches.begin(), record.patches.end(), pants.patches[p].boundary);
+        if (known == record.patches.end()) {
+            std::string sides;
+            for (const CurveSide& side : pants.patches[p].boundary) {
+                sides += fmt::format(" {}{}", side.curve, side.is_left ? " left" : " right");
+            }
+            throw TopologyError(
+                "replay: a patch is bounded by the curves{}, which is none of the recorded ones; "
+                "the curves don't run around the same parts as on the recorded member",
+                sides);
+        }
+        number[p] = static_cast<int>(known - record.patches.begin());
+    }
+    std::vector<PantsPatch> patches(pants.patches.size());
+    for (std::size_t p = 0; p < patches.size(); ++p) patches[number[p]] = pants.patches[p];
+    pants.patches = std::move(patches);
+    for (int& patch : pants.patch_of_face) patch = number[patch];
+}
+
+}  // namespace
+
+PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
+                         const std::vector<std::string>& boundary_names,
+                         const Landmarks& landmarks) {
+    PantsRecord record;
+    measure_box(mesh, record.box_min, record.box_max);
+    record.landmarks = landmarks;
+    record.genus = pants.genus;
+    for (std::size_t c = 0; c < pants.curves.size(); ++c) {
+        const PantsCurve& curve = pants.curves[c];
+        record.curves.push_back(
+            {.kind = curve.kind,
+             .name = curve.kind == PantsCurveKind::boundary && c < boundary_names.size()
+                         ? boundary_names[c]
+                         : std::string(),
+             .shape = sample_curve(mesh, curve.curve)});
+    }
+    for (const PantsPatch& patch : pants.patches) record.patches.push_back(patch.boundary);
+    return record;
+}
+
+PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
+                                const std::vector<std::string>& boundary_names,
+                                const Landmarks& landmarks, double width) {
+    const SurfaceInvariants invariants = compute_invariants(mesh);
+    if (invariants.genus != record.genus) {
+        throw TopologyError("replay: the surface has genus {}, the recorded one has {}",
+                            invariants.genus, record.genus);
+    }
+    const Warp warp(record, mesh, landmarks);
+    PantsOptions options;
+    options.loop_width = width;
+    options.only_given_loops = true;
+    options.boundary_order = match_boundaries(record, mesh, boundary_names, warp);
+    for (const auto& curve : record.curves) {
+        if (curve.kind == PantsCurveKind::boundary) continue;
+        GuideLoop& guide = options.loops.emplace_back(curve.shape);
+        for (Vector3& x : guide.points) x = warp(x);
+    }
+    PantsDecomposition pants = decompose_into_pants(mesh, options);
+    for (std::size_t c = 0; c < record.curves.size(); ++c) {
+        if (pants.curves[c].kind == record.curves[c].kind) continue;
+        throw TopologyError("replay: curve {} is a {} here and was a {} on the recorded member", c,
+                            to_string(pants.curves[c].kind), to_string(record.curves[c].kind));
+    }
+    order_patches(pants, record);
+    return pants;
+}
+
+}  // namespace couture::meshing

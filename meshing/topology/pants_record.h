@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "meshing/topology/pants.h"
+
+namespace couture::meshing {
+
+/// Named points of a part that mean the same on every member of its family: corners, and points
+/// along its feature curves.
+struct Landmarks {
+    std::map<std::string, Vector3> corners;
+    /// Equally many points on each curve, evenly spaced.
+    std::map<std::string, std::vector<Vector3>> curves;
+    /// Names of those among them that are closed: they may start anywhere.
+    std::vector<std::string> closed_curves;
+};
+
+/// What was decided on one member of a family, to be repeated on the others, whatever their meshes.
+struct PantsRecord {
+    Vector3 box_min = Vector3::Zero();
+    Vector3 box_max = Vector3::Zero();
+    Landmarks landmarks;
+    int genus = 0;
+    struct Curve {
+        PantsCurveKind kind = PantsCurveKind::cycle;
+        /// Of boundary loops: the cap's, or empty.
+        std::string name;
+        /// Evenly spaced along it, with the normals of the surface.
+        GuideLoop shape;
+    };
+    /// As in PantsDecomposition.
+    std::vector<Curve> curves;
+    std::vector<std::vector<CurveSide>> patches;
+};
+
+/// @param boundary_names  of the boundary loops, in their order; empty where they have none
+[[nodiscard]] PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
+                                       const std::vector<std::string>& boundary_names,
+                                       const Landmarks& landmarks);
+
+/// Cuts another member of the family as the first one was: the same curves in the same order and
+/// direction around the same patches. The shape of each curve is carried over by the boxes and by
+/// what the two members' landmarks have in common, and then pulled tight; boundary loops are told
+/// by their names, or else by where they lie.
+///
+/// @param width  as PantsOptions::loop_width
+/// @throws TopologyError  if the surface has another genus or other boundary loops, or if a curve
+///                        can't be followed or ends up in another way around: says which
+[[nodiscard]] PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
+                                              const std::vector<std::string>& boundary_names,
+                                              const Landmarks& landmarks, double width = 0.05);
+
+}  // namespace couture::meshing

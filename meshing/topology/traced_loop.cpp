@@ -1,0 +1,349 @@
+#include "meshing/topology/traced_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "iga/core/error.h"
+#include "meshing/topology/cylinder_cycle.h"
+
+namespace couture::meshing {
+
+namespace {
+
+class Tracer {
+  public:
+    Tracer(SurfaceMesh& mesh, const GuideLoop& guide, double width)
+        : mesh_(mesh), guide_(guide), width_(width) {}
+
+    SurfaceCurve run() {
+        check();
+        choose_region();
+        SurfaceCurve curve{follow(), true};
+        constexpr int max_rounds = 10;
+        constexpr double worth_going_on = 1e-3;
+        double before = weight(curve);
+        for (int round = 0; round < max_rounds; ++round) {
+            const auto tighter = tighten(curve);
+            if (!tighter) break;
+            const double after = weight(*tighter);
+            if (after >= before) break;
+            curve = *tighter;
+            if (after > (1.0 - worth_going_on) * before) break;
+            before = after;
+        }
+        return curve;
+    }
+
+  private:
+    void check() const {
+        const std::size_t n = guide_.points.size();
+        if (n < 3) throw InputError("loop: {} points; a closed curve needs at least 3", n);
+        if (!guide_.normals.empty() && guide_.normals.size() != n) {
+            throw InputError("loop: {} normals for {} points; give one each or none",
+                             guide_.normals.size(), n);
+        }
+        if (!(width_ > 0.0) || !std::isfinite(width_)) {
+            throw InputError("loop: width {}; it must be positive", width_);
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            if (!guide_.points[k].allFinite()) {
+                throw InputError("loop: point {} is not finite", k);
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_free(VertexHandle vertex) const {
+        if (mesh_.is_isolated(vertex) || mesh_.is_boundary(vertex)) return false;
+        const auto edges = mesh_.ve_range(vertex);
+        return std::none_of(edges.begin(), edges.end(),
+                            [&](EdgeHandle edge) { return mesh_.data(edge).curve >= 0; });
+    }
+
+    [[nodiscard]] Vector3 normal_at(VertexHandle vertex) const {
+        Vector3 normal = Vector3::Zero();
+        for (const FaceHandle face : mesh_.vf_range(vertex)) {
+            normal += face_area(mesh_, face) * face_normal(mesh_, face);
+        }
+        return normal.normalized();
+    }
+
+    // The free vertex nearest to each point; on the right side of the wall, if normals are given.
+    // An invalid handle where there is none.
+    [[nodiscard]] std::vector<VertexHandle> nearest(int region) const {
+        const std::size_t n = guide_.points.size();
+        std::vector<VertexHandle> best(n);
+        std::vector<double> least(n, std::numeric_limits<double>::infinity());
+        for (const auto vertex : mesh_.vertices()) {
+            if (!is_free(vertex)) continue;
+            if (region >= 0 && region_of_face_[(*mesh_.cvf_begin(vertex)).idx()] != region) {
+                continue;
+            }
+            const Vector3& x = mesh_.point(vertex);
+            for (std::size_t k = 0; k < n; ++k) {
+                double distance = (x - guide_.points[k]).norm();
+                if (distance >= least[k]) continue;
+                if (!guide_.normals.empty() && normal_at(vertex).dot(guide_.normals[k]) < 0.0) {
+                    distance += mesh_size_;
+                    if (distance >= least[k]) continue;
+                }
+                least[k] = distance;
+                best[k] = vertex;
+            }
+        }
+        return best;
+    }
+
+    // Curves divide the surface: the guide runs where most of its points do.
+    void choose_region() {
+        mesh_size_ = bounding_box_diagonal(mesh_);
+        region_of_face_ = regions_between_curves(mesh_);
+        std::map<int, int> votes;
+        const auto anywhere = nearest(-1);
+        for (std::size_t k = 0; k < anywhere.size(); ++k) {
+            const double limit = 0.1 * mesh_size_;
+            if (!anywhere[k].is_valid()) {
+                throw TopologyError("loop: the surface has no vertex that is free of curves");
+            }
+            const double distance = (mesh_.point(anywhere[k]) - guide_.points[k]).norm();
+            if (distance > limit) {
+                throw InputError(
+                    "loop: point {} at ({:.6g}, {:.6g}, {:.6g}) lies {:.3g} away from the nearest "
+                    "vertex of the surface; it must be within a tenth of the diagonal, {:.3g}",
+                    k, guide_.points[k].x(), guide_.points[k].y(), guide_.points[k].z(), distance,
+                    limit);
+            }
+            ++votes[region_of_face_[(*mesh_.cvf_begin(anywhere[k])).idx()]];
+        }
+        const int region =
+            std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
+                return a.second < b.second;
+            })->first;
+        anchors_ = nearest(region);
+        for (const auto face : mesh_.faces()) {
+            if (region_of_face_[face.idx()] == region) faces_.push_back(face);
+        }
+    }
+
+    [[nodiscard]] std::vector<double> factors(const CutSurface& piece) const {
+        std::vector<double> factor(piece.n_vertices());
+        for (int v = 0; v < piece.n_vertices(); ++v) {
+            const double d = distance_to_loop(piece.point(v), guide_.points) / width_;
+            factor[v] = 1.0 + d * d;
+        }
+        return factor;
+    }
+
+    // Shortest paths from anchor to anchor; what a path runs twice is left out.
+    std::vector<VertexHandle> follow() {
+        CutSurface piece(mesh_, faces_, curve_seams(mesh_));
+        piece.split_chords();
+        const std::vector<double> factor = factors(piece);
+        const std::vector<char> is_blocked = boundary_vertices(piece);
+        std::map<int, int> number;
+        for (int v = 0; v < piece.n_vertices(); ++v) {
+            if (piece.parent(v) >= 0) number[piece.parent(v)] = v;
+        }
+        std::vector<int> stops;
+        for (const VertexHandle anchor : anchors_) {
+            const int v = number.at(anchor.idx());
+            if (stops.empty() || stops.back() != v) stops.push_back(v);
+        }
+        while (stops.size() > 1 && stops.back() == stops.front()) stops.pop_back();
+        ShortestPaths search(piece, &factor);
+        std::vector<int> walk;
+        for (std::size_t k = 0; k < stops.size(); ++k) {
+            const int source = stops[k];
+            const int target = stops[(k + 1) % stops.size()];
+            std::vector<char> is_target(piece.n_vertices(), 0);
+            is_target[target] = 1;
+            const int reached = search.run(
+                {.sources = {&source, 1}, .is_blocked = &is_blocked, .is_target = &is_target});
+            if (reached < 0) {
+                throw TopologyError(
+                    "loop: no way from ({:.6g}, {:.6g}, {:.6g}) to the next point that crosses no "
+                    "other curve and no boundary",
+                    piece.point(source).x(), piece.point(source).y(), piece.point(source).z());
+            }
+            auto vertices = search.vertices_to(reached);
+            vertices.pop_back();
+            walk.insert(walk.end(), vertices.begin(), vertices.end());
+        }
+        const std::vector<int> simple = without_detours(piece, walk);
+        if (simple.size() < 3) {
+            throw TopologyError(
+                "loop: on this mesh it shrinks to {} vertices near ({:.6g}, {:.6g}, {:.6g}); its "
+                "points must run around something larger than a triangle",
+                simple.size(), guide_.points.front().x(), guide_.points.front().y(),
+                guide_.points.front().z());
+        }
+        const auto handles = embed_splits(mesh_, piece);
+        std::vector<VertexHandle> vertices;
+        for (const int v : simple) vertices.push_back(handles[v]);
+        return vertices;
+    }
+
+    // Wherever a closed walk meets itself, the shorter of its two parts is left out.
+    static std::vector<int> without_detours(const CutSurface& piece, const std::vector<int>& walk) {
+        const auto length = [&](const std::vector<int>& vertices, std::size_t first,
+                                std::size_t end) {
+            double sum = 0.0;
+            for (std::size_t k = first; k < end; ++k) {
+                sum += (piece.point(vertices[(k + 1) % vertices.size()]) - piece.point(vertices[k]))
+                           .norm();
+            }
+            return sum;
+        };
+        const double whole = length(walk, 0, walk.size());
+        std::vector<int> simple;
+        std::map<int, std::size_t> place;
+        for (const int v : walk) {
+            if (const auto met = place.find(v); met != place.end()) {
+                const std::size_t first = met->second;
+                simple.push_back(v);
+                const double loop = length(simple, first, simple.size() - 1);
+                if (loop > 0.5 * whole) {
+                    // The way until here was the detour.
+                    simple.erase(simple.begin(),
+                                 simple.begin() + static_cast<std::ptrdiff_t>(first));
+                    simple.pop_back();
+                    return simple;
+                }
+                simple.pop_back();
+                for (std::size_t k = first + 1; k < simple.size(); ++k) place.erase(simple[k]);
+                simple.resize(first + 1);
+                continue;
+            }
+            place[v] = simple.size();
+            simple.push_back(v);
+        }
+        return simple;
+    }
+
+    [[nodiscard]] double weight(const SurfaceCurve& curve) const {
+        double sum = 0.0;
+        const std::size_t n = curve.vertices.size();
+        std::vector<double> factor(n);
+        for (std::size_t k = 0; k < n; ++k) {
+            const double d =
+                distance_to_loop(mesh_.point(curve.vertices[k]), guide_.points) / width_;
+            factor[k] = 1.0 + d * d;
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t next = (k + 1) % n;
+            sum += 0.5 * (factor[k] + factor[next]) *
+                   (mesh_.point(curve.vertices[next]) - mesh_.point(curve.vertices[k])).norm();
+        }
+        return sum;
+    }
+
+    // Faces of the region; those that came by splits belong to it if their neighbours do.
+    void update_faces() {
+        const std::vector<int> region = regions_between_curves(mesh_);
+        const int here = region[faces_.front().idx()];
+        faces_.clear();
+        for (const auto face : mesh_.faces()) {
+            if (region[face.idx()] == here) faces_.push_back(face);
+        }
+    }
+
+    // The shortest loop in an annulus around this one; nothing if there is no annulus.
+    [[nodiscard]] std::optional<SurfaceCurve> tighten(const SurfaceCurve& curve) {
+        update_faces();
+        const CutSurface piece(mesh_, faces_, curve_seams(mesh_));
+        const std::vector<char> is_boundary = boundary_vertices(piece);
+        std::vector<int> number(mesh_.n_vertices(), -1);
+        for (int v = 0; v < piece.n_vertices(); ++v) number[piece.parent(v)] = v;
+        std::vector<int> sources;
+        for (const VertexHandle vertex : curve.vertices) sources.push_back(number[vertex.idx()]);
+        ShortestPaths search(piece);
+        search.run({.sources = sources, .is_blocked = &is_boundary, .limit = 2.0 * width_});
+        constexpr int n_radii = 5;
+        double radius = 2.0 * width_;
+        for (int k = 0; k < n_radii; ++k, radius *= 0.5) {
+            std::vector<FaceHandle> around;
+            for (int f = 0; f < piece.n_faces(); ++f) {
+                const auto triangle = piece.triangle(f);
+                if (std::all_of(triangle.begin(), triangle.end(), [&](int v) {
+                        return search.distance(v) <= radius && is_boundary[v] == 0;
+                    })) {
+                    around.emplace_back(faces_[f]);
+                }
+            }
+            if (around.empty()) return std::nullopt;
+            if (auto found = shortest_in(around, curve)) return found;
+        }
+        return std::nullopt;
+    }
+
+    [[nodiscard]] std::optional<SurfaceCurve> shortest_in(const std::vector<FaceHandle>& faces,
+                                                          const SurfaceCurve& curve) {
+        CutSurface annulus(mesh_, faces, curve_seams(mesh_));
+        const auto component = annulus.face_components();
+        if (*std::max_element(component.begin(), component.end()) > 0 ||
+            annulus.euler_characteristic() != 0 || annulus.boundary_loops().size() != 2) {
+            return std::nullopt;
+        }
+        // Which of the two ends lies on the left, and that the curve goes around at all.
+        std::vector<int> number(mesh_.n_vertices(), -1);
+        for (int v = 0; v < annulus.n_vertices(); ++v) number[annulus.parent(v)] = v;
+        std::vector<int> path;
+        for (std::size_t k = 0; k < curve.vertices.size(); ++k) {
+            const int u = number[curve.vertices[k].idx()];
+            const int v = number[curve.vertices[(k + 1) % curve.vertices.size()].idx()];
+            const int h = u < 0 || v < 0 ? -1 : annulus.find_halfedge(u, v);
+            if (h < 0 || annulus.is_boundary_vertex(u)) return std::nullopt;
+            path.push_back(h);
+        }
+        CutSurface halves = annulus;
+        halves.slice(path);
+        const auto side = halves.face_components();
+        const int left = side[CutSurface::face(path.front())];
+        if (*std::max_element(side.begin(), side.end()) != 1 ||
+            halves.boundary_loops().size() != 4) {
+            return std::nullopt;
+        }
+        const auto ends = annulus.boundary_loops();
+        const bool first_is_left = side[CutSurface::face(ends[0].front())] == left;
+        Cutting cutting{annulus, factors(annulus)};
+        const auto found =
+            find_cycle_around(cutting, ends[first_is_left ? 0 : 1], ends[first_is_left ? 1 : 0],
+                              boundary_vertices(annulus));
+        if (!found || found->vertices.size() < 3) return std::nullopt;
+        SurfaceCurve shorter;
+        for (const int v : found->vertices) {
+            shorter.vertices.emplace_back(annulus.parent(v));
+        }
+        return shorter;
+    }
+
+    SurfaceMesh& mesh_;
+    const GuideLoop& guide_;
+    double width_;
+    double mesh_size_ = 0.0;
+    std::vector<int> region_of_face_;
+    std::vector<FaceHandle> faces_;
+    std::vector<VertexHandle> anchors_;
+};
+
+}  // namespace
+
+double distance_to_loop(const Vector3& x, const std::vector<Vector3>& loop) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+        const Vector3& a = loop[k];
+        const Vector3 along = loop[(k + 1) % loop.size()] - a;
+        const double squared = along.squaredNorm();
+        const double t = squared > 0.0 ? std::clamp((x - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+        least = std::min(least, (x - a - t * along).squaredNorm());
+    }
+    return std::sqrt(least);
+}
+
+SurfaceCurve trace_loop(SurfaceMesh& mesh, const GuideLoop& guide, double width) {
+    return Tracer(mesh, guide, width).run();
+}
+
+}  // namespace couture::meshing
