@@ -94,18 +94,32 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     const auto mesh = std::make_shared<MeshOptions>();
     sub = add_command(app, command, "mesh", "cut a surface into pants",
                       [&command, mesh] { return run_mesh(*mesh, command.common); });
-    sub->add_option("surface", mesh->surface,
-                    "a surface file (.stl, .obj, .off), or the name of a part (wheel, seal, ...)")
+    sub->add_option(
+           "surface", mesh->surface,
+           "a surface file (.stl, .obj, .off), the name of a part (wheel, seal, ...), or a "
+           "deck (.toml)")
         ->required();
     sub->add_option("--stage", mesh->stage,
                     "the last stage: surface, features, loops, pants (default)");
-    sub->add_option("--set", mesh->overrides, "a dimension of the part: NAME=VALUE");
+    sub->add_option("--set", mesh->overrides,
+                    "a dimension of the part: NAME=VALUE; with a deck section.key=value");
     sub->add_option("--edge-length", mesh->edge_length, "of the part's triangles");
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
+    sub->add_option("--open", mesh->open,
+                    "take these plane faces of a part off (caps: all that are made for it)");
+    sub->add_option("--open-at", mesh->open_at, "take off the plane face at X,Y,Z");
+    sub->add_option("--open-facing", mesh->open_facing,
+                    "take off the plane faces whose outward normal is X,Y,Z");
     sub->add_option("--cycle", mesh->cycle_weights,
                     "what makes a cut short: length=1, symmetry=, curvature=, sharp=");
     sub->add_option("--merge", mesh->merge_weights, "which cut comes first: the same terms");
+    sub->add_option("--most-boundaries", mesh->most_boundaries,
+                    "put pants with short tubes between them together: patches of up to 3 "
+                    "(default) to 6 boundary loops");
+    sub->add_option("--like", mesh->like,
+                    "cut as another member of the family was: its NAME_pants.json")
+        ->check(CLI::ExistingFile);
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");
 

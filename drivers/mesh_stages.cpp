@@ -1,10 +1,16 @@
 #include "drivers/mesh_stages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
+#include "drivers/prepared_surface.h"
 #include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "iga/core/timer.h"
 #include "io/did_you_mean.h"
+#include "io/pants_file.h"
 #include "io/picture.h"
 #include "io/surface_writer.h"
 #include "meshing/surface/curvature.h"
@@ -170,19 +176,33 @@ MeshStage read_mesh_stage(const std::string& name) {
 
 std::string to_string(MeshStage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
-MeshStages run_mesh_stages(SurfaceMesh mesh, MeshStage last, const FeatureOptions& feature_options,
-                           const PantsOptions& pants_options) {
+MeshStages run_mesh_stages(const io::MeshDeck& deck) {
+    const MeshStage last = read_mesh_stage(deck.stage);
+    PreparedSurface surface = prepare_surface(deck);
+    PantsOptions options = pants_options(deck, surface);
+    const Timer timer;
+    double last_said = 0.0;
+    options.progress = [&](std::string_view what, double fraction) {
+        if (timer.seconds() < last_said + 1.0) return;
+        last_said = timer.seconds();
+        log::info(fmt::format("mesh: {} ({:.0f} %, {:.0f} s)", what, 100.0 * fraction, last_said));
+    };
     MeshStages stages;
-    stages.mesh = std::move(mesh);
+    stages.mesh = std::move(surface.mesh);
     stages.invariants = compute_invariants(stages.mesh);
     stages.surface_name = surface_name(stages.mesh);
     check_gauss_bonnet(stages.mesh);
     if (last >= MeshStage::features) {
-        stages.features = detect_features(stages.mesh, feature_options);
+        stages.features = detect_features(stages.mesh, deck.features);
     }
-    if (last >= MeshStage::loops) {
-        stages.pants = decompose_into_pants(stages.mesh, pants_options);
+    if (last < MeshStage::loops) return stages;
+    if (deck.like.empty()) {
+        stages.pants = decompose_into_pants(stages.mesh, options);
+    } else {
+        stages.pants = replay_pants(stages.mesh, io::read_pants_record(deck.like),
+                                    surface.boundary_names, surface.landmarks);
     }
+    stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
     return stages;
 }
 
@@ -202,6 +222,12 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     vtp += ".vtp";
     io::write_vtp(vtp, to_soup(stages.mesh), on_points, on_triangles, lines, provenance);
     std::vector<std::filesystem::path> files{vtp};
+    if (stage == MeshStage::pants && stages.record) {
+        std::filesystem::path record = stem;
+        record += ".json";
+        io::write_pants_record(record, *stages.record, provenance);
+        files.push_back(record);
+    }
     if (png) {
         std::filesystem::path picture = stem;
         picture += ".png";

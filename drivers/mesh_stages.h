@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh_deck.h"
 #include "meshing/surface/features.h"
 #include "meshing/surface/surface_mesh.h"
 #include "meshing/topology/invariants.h"
-#include "meshing/topology/pants.h"
+#include "meshing/topology/pants_record.h"
 
 namespace couture::drivers {
 
@@ -26,14 +27,14 @@ struct MeshStages {
     std::string surface_name;
     meshing::Features features;
     std::optional<meshing::PantsDecomposition> pants;
+    /// What was decided, for other members of the family.
+    std::optional<meshing::PantsRecord> record;
 };
 
-/// Runs the stages up to `last` on an oriented manifold.
+/// Runs the stages of a deck up to the one that it names. Says what it does once a second.
 ///
 /// @throws what the stages throw
-[[nodiscard]] MeshStages run_mesh_stages(meshing::SurfaceMesh mesh, MeshStage last,
-                                         const meshing::FeatureOptions& feature_options,
-                                         const meshing::PantsOptions& pants_options);
+[[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck);
 
 /// Writes what a stage shows as STEM.vtp, and with `png` as STEM.png.
 ///

@@ -113,6 +113,12 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
     geometry.source = section.place().source;
     const auto file = section.text("file");
     const auto part = section.text("part");
+    if (section.has("surface")) {
+        section.mistake("surface",
+                        "'surface' is for `couture mesh`; a problem is solved on splines: 'file' "
+                        "or 'part'");
+        return;
+    }
     if (section.has("file") == section.has("part")) {
         section.mistake(section.has("file") ? "part" : "",
                         "[geometry] needs either 'file' (a spline file) or 'part' (a built-in "
@@ -250,6 +256,11 @@ Deck parse_deck(const std::string& text, const fs::path& path,
         for_section(top, "geometry", [&](Section& section) {
             read_geometry(section, path.parent_path(), deck.geometry);
         });
+    }
+    if (top.find("meshing") != nullptr) {
+        top.mistake("meshing",
+                    "[meshing] is for `couture mesh`; this command takes the deck of a problem on "
+                    "splines");
     }
     for_section(top, "discretization",
                 [&](Section& section) { read_discretization(section, deck); });

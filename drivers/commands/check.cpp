@@ -5,12 +5,15 @@
 #include "drivers/commands/commands.h"
 #include "drivers/deck_check.h"
 #include "drivers/job_geometry.h"
+#include "drivers/prepared_surface.h"
 #include "drivers/probes.h"
 #include "drivers/remesher.h"
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "io/pants_file.h"
+#include "meshing/topology/invariants.h"
 
 namespace couture::drivers {
 
@@ -64,9 +67,34 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     return ExitCode::done;
 }
 
+// The surface is read and opened, its corners and the record are found; nothing is cut.
+int check_mesh_deck(const io::MeshDeck& deck, const CommonOptions& common) {
+    const PreparedSurface surface = prepare_surface(deck);
+    static_cast<void>(pants_options(deck, surface));
+    if (!deck.like.empty()) static_cast<void>(io::read_pants_record(deck.like));
+    const std::string name = meshing::surface_name(surface.mesh);
+    if (common.json) {
+        const nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                               {"status", "valid"},
+                                               {"deck", deck.path.string()},
+                                               {"title", deck.title},
+                                               {"triangles", surface.mesh.n_faces()},
+                                               {"surface", name},
+                                               {"warnings", log::warnings()}};
+        fmt::print("{}\n", object.dump(2));
+    } else if (!common.quiet) {
+        fmt::print("{}: valid; triangles {}, {}\n", deck.path.filename().string(),
+                   surface.mesh.n_faces(), name);
+    }
+    return ExitCode::done;
+}
+
 }  // namespace
 
 int run_check(const SolveOptions& options, const CommonOptions& common) {
+    if (io::is_mesh_deck(options.deck)) {
+        return check_mesh_deck(io::read_mesh_deck(options.deck, options.overrides), common);
+    }
     const io::Deck deck = io::read_deck(options.deck, options.overrides);
     const io::AnyMultiPatch geometry = load_geometry(deck);
     return std::visit(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,17 +32,24 @@ struct SolveOptions {
 };
 
 struct MeshOptions {
-    /// A surface file, or the name of a part.
+    /// A surface file, the name of a part, or a deck.
     std::string surface;
-    /// The last stage that is made: surface, features, loops or pants.
-    std::string stage = "pants";
-    /// Dimensions of a part: name=value.
+    /// The last stage that is made; empty: the deck's, or pants.
+    std::string stage;
+    /// Dimensions of a part: name=value; of a deck section.key=value.
     std::vector<std::string> overrides;
+    /// Caps that are opened: by name ("caps": all), by points "x,y,z", by normals.
+    std::vector<std::string> open;
+    std::vector<std::string> open_at;
+    std::vector<std::string> open_facing;
     /// Terms of the criteria of pants: name=weight.
     std::vector<std::string> cycle_weights;
     std::vector<std::string> merge_weights;
     /// Degrees.
-    double feature_angle = 40.0;
+    std::optional<double> feature_angle;
+    std::optional<int> most_boundaries;
+    /// Decisions of another member, to be repeated; may be empty.
+    std::filesystem::path like;
     /// Edge length of a part's triangles; 0: its default.
     double edge_length = 0.0;
     /// Empty: out/<name> below the working folder.

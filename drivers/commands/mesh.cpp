@@ -2,21 +2,25 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "drivers/commands/commands.h"
+#include "drivers/hash.h"
 #include "drivers/mesh_stages.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
-#include "io/surface_reader.h"
+#include "io/mesh_deck.h"
 #include "meshing/parts/part_surface.h"
 
 namespace couture::drivers {
 
 namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
 
 // "name=value" with a number.
 std::pair<std::string, double> read_setting(const std::string& setting, const char* option) {
@@ -62,7 +66,45 @@ bool is_part(const std::string& name) {
                        [&](const meshing::PartInfo& part) { return part.name == name; });
 }
 
-meshing::TriangleSoup load_surface(const MeshOptions& options) {
+// "x,y,z".
+Vector3 read_point(const std::string& text, const char* option) {
+    Vector3 x;
+    const char* at = text.data();
+    const char* end = text.data() + text.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto [stop, error] = std::from_chars(at, end, x[i]);
+        const bool goes_on = i < 2 ? stop != end && *stop == ',' : stop == end;
+        if (error != std::errc() || !goes_on || !std::isfinite(x[i])) {
+            throw InputError("mesh: {} '{}' is no point; write X,Y,Z without blanks", option, text);
+        }
+        at = stop + 1;
+    }
+    return x;
+}
+
+// A deck as it would be written for the options.
+io::MeshDeck deck_of(const MeshOptions& options) {
+    if (std::filesystem::path(options.surface).extension() == ".toml") {
+        const auto overrides = [&] {
+            auto all = options.overrides;
+            if (!options.stage.empty()) {
+                all.push_back(fmt::format("meshing.stage=\"{}\"", options.stage));
+            }
+            return all;
+        };
+        const bool has_more =
+            options.edge_length != 0.0 || options.feature_angle || !options.cycle_weights.empty() ||
+            !options.merge_weights.empty() || !options.open.empty() || !options.open_at.empty() ||
+            !options.open_facing.empty() || options.most_boundaries || !options.like.empty();
+        if (has_more) {
+            throw InputError(
+                "mesh: with a deck only --stage, --set, --out and --png are options; write the "
+                "others into its section [meshing], or --set meshing.KEY=VALUE");
+        }
+        return io::read_mesh_deck(options.surface, overrides());
+    }
+    io::MeshDeck deck;
+    deck.title = std::filesystem::path(options.surface).stem().string();
     if (std::filesystem::exists(options.surface) || !is_part(options.surface)) {
         if (!options.overrides.empty() || options.edge_length != 0.0) {
             throw InputError(
@@ -70,24 +112,34 @@ meshing::TriangleSoup load_surface(const MeshOptions& options) {
                 "it is",
                 options.surface);
         }
-        return io::read_surface(options.surface);
+        deck.surface = options.surface;
+    } else {
+        deck.part = options.surface;
+        deck.edge_length = options.edge_length;
+        for (const std::string& setting : options.overrides) {
+            deck.parameters.insert(read_setting(setting, "--set"));
+        }
     }
-    std::map<std::string, double> parameters;
-    for (const std::string& setting : options.overrides) {
-        parameters.insert(read_setting(setting, "--set"));
+    if (!options.stage.empty()) deck.stage = options.stage;
+    if (options.feature_angle) deck.features.angle = *options.feature_angle * degree;
+    for (const std::string& name : options.open) {
+        if (name == "caps") {
+            deck.open.all = true;
+        } else {
+            deck.open.names.push_back(name);
+        }
     }
-    return meshing::make_part_surface(options.surface, parameters, options.edge_length).soup;
-}
-
-// Closed surfaces are oriented outwards.
-meshing::SurfaceMesh make_mesh(meshing::TriangleSoup soup) {
-    meshing::SurfaceMesh mesh = meshing::make_surface_mesh(soup);
-    if (meshing::compute_invariants(mesh).n_boundaries == 0 && meshing::signed_volume(mesh) < 0.0) {
-        log::warn("mesh: the surface is inside out (its volume is negative); it is turned round");
-        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-        mesh = meshing::make_surface_mesh(soup);
+    for (const auto& text : options.open_at) {
+        deck.open.points.push_back(read_point(text, "--open-at"));
     }
-    return mesh;
+    for (const auto& text : options.open_facing) {
+        deck.open.normals.push_back(read_point(text, "--open-facing"));
+    }
+    deck.pants.cycle = read_weights(options.cycle_weights, "--cycle");
+    deck.pants.merge = read_weights(options.merge_weights, "--merge");
+    deck.pants.most_boundaries = options.most_boundaries.value_or(deck.pants.most_boundaries);
+    deck.like = options.like;
+    return deck;
 }
 
 nlohmann::ordered_json to_json(const MeshStages& stages) {
@@ -110,6 +162,7 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
     auto& curves = object["curves"] = nlohmann::ordered_json::array();
     for (const auto& curve : stages.pants->curves) {
         curves.push_back({{"kind", std::string(meshing::to_string(curve.kind))},
+                          {"name", curve.name},
                           {"length", curve.length},
                           {"vertices", curve.curve.vertices.size()}});
     }
@@ -124,13 +177,28 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
     return object;
 }
 
+// " pants", or what sorts of n-pants there are.
+std::string kinds_of_patches(const meshing::PantsDecomposition& pants) {
+    static const std::map<std::size_t, const char*> names{
+        {3, "pants"}, {4, "shirt"}, {5, "suit"}, {6, "spacesuit"}};
+    std::map<std::size_t, int> count;
+    for (const auto& patch : pants.patches) ++count[patch.boundary.size()];
+    if (count.size() == 1 && count.begin()->first == 3) return " pants";
+    std::string text;
+    for (const auto& [n, number] : count) {
+        const auto name = names.find(n);
+        text += fmt::format("{} {} {}", text.empty() ? ":" : ",", number,
+                            name != names.end() ? name->second : fmt::format("{}-pants", n));
+        if (number > 1 && n > 3 && name != names.end()) text += "s";
+    }
+    return text;
+}
+
 void print_text(const MeshStages& stages, MeshStage last) {
     const auto& invariants = stages.invariants;
-    fmt::print(
-        "surface   {} vertices, {} edges, {} triangles: {}, {} boundaries, Euler characteristic "
-        "{}\n",
-        invariants.n_vertices, invariants.n_edges, invariants.n_faces, stages.surface_name,
-        invariants.n_boundaries, invariants.euler_characteristic);
+    fmt::print("surface   {} vertices, {} edges, {} triangles: {}, Euler characteristic {}\n",
+               invariants.n_vertices, invariants.n_edges, invariants.n_faces, stages.surface_name,
+               invariants.euler_characteristic);
     if (last >= MeshStage::features) {
         fmt::print("features  {} curves, {} corners, {} smooth faces\n",
                    stages.features.curves.size(), stages.features.corners.size(),
@@ -139,37 +207,32 @@ void print_text(const MeshStages& stages, MeshStage last) {
     if (!stages.pants) return;
     for (const auto& curve : stages.pants->curves) {
         if (last == MeshStage::loops && curve.kind == meshing::PantsCurveKind::cycle) continue;
-        fmt::print("{:<9} length {:.6g}\n", meshing::to_string(curve.kind), curve.length);
+        fmt::print("{:<9} length {:.6g}{}\n", meshing::to_string(curve.kind), curve.length,
+                   curve.name.empty() ? "" : ", cap " + curve.name);
     }
     if (last == MeshStage::pants) {
         const bool are_pants = stages.invariants.euler_characteristic < 0;
         fmt::print("patches   {}{}\n", stages.pants->patches.size(),
-                   are_pants ? " pants" : fmt::format(" ({})", stages.surface_name));
+                   are_pants ? kinds_of_patches(*stages.pants)
+                             : fmt::format(" ({})", stages.surface_name));
     }
 }
 
 }  // namespace
 
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
-    const MeshStage last = read_mesh_stage(options.stage);
-    constexpr double degree = std::numbers::pi / 180.0;
-    const meshing::FeatureOptions features{.angle = options.feature_angle * degree};
-    const meshing::PantsOptions pants{
-        .cycle = read_weights(options.cycle_weights, "--cycle"),
-        .merge = read_weights(options.merge_weights, "--merge"),
-        .progress = [](std::string_view what, double fraction) {
-            log::detail(fmt::format("{} ({:.0f} %)", what, 100.0 * fraction));
-        }};
+    const io::MeshDeck deck = deck_of(options);
+    const MeshStage last = read_mesh_stage(deck.stage);
     const Timer timer;
-    const MeshStages stages =
-        run_mesh_stages(make_mesh(load_surface(options)), last, features, pants);
+    const MeshStages stages = run_mesh_stages(deck);
     const double seconds = timer.seconds();
 
     const std::string name = std::filesystem::path(options.surface).stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
-    const std::string provenance = fmt::format("couture {} mesh {} --stage {}", COUTURE_VERSION,
-                                               options.surface, options.stage);
+    const std::string provenance =
+        fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
+                    deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));
     std::vector<std::string> files;
     for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
         const auto which = static_cast<MeshStage>(stage);

@@ -37,7 +37,7 @@ Landmarks part_landmarks(const PartSurface& part) {
         std::vector<Vector3> points;
         for (const int v : curve.vertices) points.push_back(part.soup.points[v]);
         landmarks.curves[curve.name] = sample(std::move(points), curve.is_closed);
-        if (curve.is_closed) landmarks.closed_curves.push_back(curve.name);
+        if (curve.is_closed) landmarks.closed_curves.insert(curve.name);
     }
     return landmarks;
 }

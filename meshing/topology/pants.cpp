@@ -50,7 +50,9 @@ class Decomposer {
             add_curve({.kind = PantsCurveKind::boundary,
                        .curve = {loop.vertices, true},
                        .length = loop.length,
-                       .around = std::nullopt});
+                       .name = b < static_cast<int>(options_.boundary_names.size())
+                                   ? options_.boundary_names[b]
+                                   : std::string()});
         }
         check_options(invariants.euler_characteristic);
         split_chords_between_curves(mesh_);
@@ -147,10 +149,7 @@ class Decomposer {
         } catch (const TopologyError& error) {
             throw TopologyError("pants: curve {}: {}", result_.curves.size(), error.what());
         }
-        add_curve({.kind = PantsCurveKind::cycle,
-                   .curve = std::move(curve),
-                   .length = 0.0,
-                   .around = std::nullopt});
+        add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve)});
         split_chords_between_curves(mesh_);
     }
 
@@ -189,10 +188,7 @@ class Decomposer {
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve curve;
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
-            add_curve({.kind = PantsCurveKind::handle,
-                       .curve = std::move(curve),
-                       .length = 0.0,
-                       .around = std::nullopt});
+            add_curve({.kind = PantsCurveKind::handle, .curve = std::move(curve)});
         }
         split_chords_between_curves(mesh_);
     }
@@ -322,10 +318,8 @@ class Decomposer {
         const auto vertices = embed_splits(mesh_, cycle.surface);
         SurfaceCurve curve;
         for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
-        const int number = add_curve({.kind = PantsCurveKind::cycle,
-                                      .curve = std::move(curve),
-                                      .length = 0.0,
-                                      .around = around});
+        const int number =
+            add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
         split_chords_between_curves(mesh_);
         return number;
     }

@@ -4,6 +4,7 @@
 #include <compare>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,8 +39,10 @@ struct PantsCurve {
     PantsCurveKind kind = PantsCurveKind::cycle;
     SurfaceCurve curve;
     double length = 0.0;
+    /// Of boundary loops: see PantsOptions::boundary_names.
+    std::string name = {};
     /// The two loops that a cycle runs around; none of handles and of loops that were given.
-    std::optional<std::array<CurveSide, 2>> around;
+    std::optional<std::array<CurveSide, 2>> around = {};
 };
 
 /// A piece of genus 0 with three boundary loops, or with up to six; or, if the surface has no
@@ -67,6 +70,8 @@ struct PantsOptions {
     /// No cuts are added to the loops; what lies between them must have genus 0 and may have any
     /// number of boundary loops.
     bool only_given_loops = false;
+    /// Of the boundary loops, in the order of boundary_loops; empty: they have none.
+    std::vector<std::string> boundary_names = {};
     /// Order of the boundary loops (see boundary_loops) among the curves; empty: as they are.
     std::vector<int> boundary_order = {};
     /// Points on the surface; for each list a cycle is made that passes them, around the two loops

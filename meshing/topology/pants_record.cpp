@@ -70,12 +70,10 @@ class Warp {
                 add(x, other->second);
             }
         }
-        const auto& closed = from.landmarks.closed_curves;
         for (const auto& [name, points] : from.landmarks.curves) {
             const auto other = landmarks.curves.find(name);
             if (other == landmarks.curves.end() || other->second.size() != points.size()) continue;
-            const bool is_closed = std::find(closed.begin(), closed.end(), name) != closed.end();
-            add_curve(points, other->second, is_closed);
+            add_curve(points, other->second, from.landmarks.closed_curves.contains(name));
         }
     }
 
@@ -200,20 +198,14 @@ void order_patches(PantsDecomposition& pants, const PantsRecord& record) {
 }  // namespace
 
 PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
-                         const std::vector<std::string>& boundary_names,
                          const Landmarks& landmarks) {
     PantsRecord record;
     measure_box(mesh, record.box_min, record.box_max);
     record.landmarks = landmarks;
     record.genus = pants.genus;
-    for (std::size_t c = 0; c < pants.curves.size(); ++c) {
-        const PantsCurve& curve = pants.curves[c];
+    for (const PantsCurve& curve : pants.curves) {
         record.curves.push_back(
-            {.kind = curve.kind,
-             .name = curve.kind == PantsCurveKind::boundary && c < boundary_names.size()
-                         ? boundary_names[c]
-                         : std::string(),
-             .shape = sample_curve(mesh, curve.curve)});
+            {.kind = curve.kind, .name = curve.name, .shape = sample_curve(mesh, curve.curve)});
     }
     for (const PantsPatch& patch : pants.patches) record.patches.push_back(patch.boundary);
     return record;
@@ -231,6 +223,7 @@ PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
     PantsOptions options;
     options.loop_width = width;
     options.only_given_loops = true;
+    options.boundary_names = boundary_names;
     options.boundary_order = match_boundaries(record, mesh, boundary_names, warp);
     for (const auto& curve : record.curves) {
         if (curve.kind == PantsCurveKind::boundary) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct Landmarks {
     /// Equally many points on each curve, evenly spaced.
     std::map<std::string, std::vector<Vector3>> curves;
     /// Names of those among them that are closed: they may start anywhere.
-    std::vector<std::string> closed_curves;
+    std::set<std::string> closed_curves;
 };
 
 /// What was decided on one member of a family, to be repeated on the others, whatever their meshes.
@@ -36,9 +37,7 @@ struct PantsRecord {
     std::vector<std::vector<CurveSide>> patches;
 };
 
-/// @param boundary_names  of the boundary loops, in their order; empty where they have none
 [[nodiscard]] PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
-                                       const std::vector<std::string>& boundary_names,
                                        const Landmarks& landmarks);
 
 /// Cuts another member of the family as the first one was: the same curves in the same order and
@@ -46,7 +45,8 @@ struct PantsRecord {
 /// what the two members' landmarks have in common, and then pulled tight; boundary loops are told
 /// by their names, or else by where they lie.
 ///
-/// @param width  as PantsOptions::loop_width
+/// @param boundary_names  as PantsOptions::boundary_names
+/// @param width           as PantsOptions::loop_width
 /// @throws TopologyError  if the surface has another genus or other boundary loops, or if a curve
 ///                        can't be followed or ends up in another way around: says which
 [[nodiscard]] PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,

@@ -18,7 +18,7 @@ TEST_CASE("mesh: a part is cut into pants and every stage is written", "[drivers
     CHECK(object["features"]["faces"] == 8);
     CHECK(object["patches"].size() == 2);
     CHECK(object["curves"].size() == 3);
-    CHECK(object["files"].size() == 4);
+    CHECK(object["files"].size() == 5);
     for (const auto& file : object["files"]) {
         CHECK(std::filesystem::exists(folder.path() / file.get<std::string>()));
     }
@@ -42,6 +42,52 @@ TEST_CASE("mesh: stages, dimensions and weights can be chosen", "[drivers]") {
     CHECK_THAT(weights.output, Contains("2 pants"));
 }
 
+TEST_CASE("mesh: another member of a family is cut as the first one was", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto first =
+        run_couture("mesh seal --open caps --edge-length 4 --out first", folder.path());
+    REQUIRE(first.exit_code == 0);
+    CHECK_THAT(first.output, Contains("cap cap_x_low"));
+    const auto second = run_couture(
+        "mesh seal --set L1=79 R3=43 --open caps --edge-length 3.5 --like first/seal_pants.json "
+        "--json --out second",
+        folder.path());
+    REQUIRE(second.exit_code == 0);
+    const auto reference = nlohmann::json::parse(
+        run_couture("mesh seal --open caps --edge-length 4 --json", folder.path()).output);
+    const auto member = nlohmann::json::parse(second.output);
+    CHECK(member["patches"] == reference["patches"]);
+    CHECK(std::filesystem::exists(folder.path() / "second/seal_pants.json"));
+    const auto closed =
+        run_couture("mesh seal --edge-length 4 --like first/seal_pants.json", folder.path());
+    CHECK(closed.exit_code == 2);
+    CHECK_THAT(closed.errors, Contains("open the same caps"));
+}
+
+TEST_CASE("mesh: a deck says all of it", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "plate.toml",
+                   "[geometry]\npart = \"plate_with_two_holes\"\n[meshing]\nedge_length = "
+                   "8\n[[meshing.cycle_through]]\npoints = [[0, 0, 0]]\n");
+    const auto checked = run_couture("check plate.toml", folder.path());
+    CHECK(checked.exit_code == 0);
+    CHECK_THAT(checked.output, Contains("valid"));
+    CHECK_THAT(run_couture("check plate.toml --json", folder.path()).output,
+               Contains("\"status\": \"valid\""));
+    const auto solved = run_couture("solve plate.toml", folder.path());
+    CHECK(solved.exit_code == 2);
+    CHECK_THAT(solved.errors, Contains("[meshing] is for `couture mesh`"));
+    const auto stage = run_couture("mesh plate.toml --stage features --json", folder.path());
+    REQUIRE(stage.exit_code == 0);
+    CHECK(nlohmann::json::parse(stage.output)["files"].size() == 2);
+    const auto both = run_couture("mesh plate.toml --edge-length 8", folder.path());
+    CHECK(both.exit_code == 2);
+    CHECK_THAT(both.errors, Contains("with a deck only"));
+    const auto changed = run_couture("mesh plate.toml --set meshing.edge_length=-8", folder.path());
+    CHECK(changed.exit_code == 2);
+    CHECK_THAT(changed.errors, Contains("edge_length"));
+}
+
 TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     const TemporaryFolder folder;
     const auto refused = [&](const std::string& arguments, const std::string& text) {
@@ -53,6 +99,13 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     refused("plate --set P1", "write NAME=NUMBER");
     refused("plate --set P9=3", "unknown parameter 'P9'");
     refused("plate --cycle weight=3", "has no term 'weight'");
+    refused("plate --open lid", "has no face 'lid'");
+    refused("plate --open caps", "has no caps");
+    refused("plate --open-at 1,2", "write X,Y,Z");
+    refused("plate --open-at 1,2,x", "write X,Y,Z");
+    refused("plate --open-facing 1,1,1", "no plane face");
+    refused("plate --most-boundaries 7", "most_boundaries = 7");
+    refused("plate --like no.json", "no.json");
     refused("no_such.stl", "no_such.stl");
     refused("plate --feature-angle 270", "angle");
     io::write_text(folder.path() / "text.stl", "a letter to a friend\n");
@@ -60,6 +113,7 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     io::write_text(folder.path() / "fan.off",
                    "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 0 1 4\n");
     refused("fan.off", "triangle 2");
+    refused("fan.off --open caps", "triangle 2");
     refused("fan.off --edge-length 3", "are for parts");
     io::write_text(folder.path() / "inside_out.off",
                    "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n");

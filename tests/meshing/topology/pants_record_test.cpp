@@ -58,9 +58,9 @@ TEST_CASE("replay_pants: a family is cut in the same way, each member on its own
     CAPTURE(part);
     const double edge_length = 1.6 * default_edge_length(part);
     Member reference = make_member(part, {}, edge_length, part == "seal");
-    const PantsDecomposition pants = decompose_into_pants(reference.mesh);
-    const PantsRecord record =
-        record_pants(reference.mesh, pants, reference.boundary_names, reference.landmarks);
+    const PantsDecomposition pants =
+        decompose_into_pants(reference.mesh, {.boundary_names = reference.boundary_names});
+    const PantsRecord record = record_pants(reference.mesh, pants, reference.landmarks);
     REQUIRE(static_cast<int>(record.patches.size()) ==
             -compute_invariants(reference.mesh).euler_characteristic);
     for (const auto& parameters : star(part)) {
@@ -83,7 +83,7 @@ TEST_CASE("replay_pants: a family is cut in the same way, each member on its own
 TEST_CASE("replay_pants: on the member itself the cuts stay where they are", "[topology][parts]") {
     Member reference = make_member("wheel", {}, 2.0 * default_edge_length("wheel"), false);
     const PantsDecomposition pants = decompose_into_pants(reference.mesh);
-    const PantsRecord record = record_pants(reference.mesh, pants, {}, reference.landmarks);
+    const PantsRecord record = record_pants(reference.mesh, pants, reference.landmarks);
     Member again = make_member("wheel", {}, 2.0 * default_edge_length("wheel"), false);
     const PantsDecomposition replayed = replay_pants(again.mesh, record, {}, again.landmarks);
     const double far = 2.0 * default_edge_length("wheel");
@@ -98,13 +98,14 @@ TEST_CASE("replay_pants: on the member itself the cuts stay where they are", "[t
 TEST_CASE("replay_pants: another topology is refused", "[topology][parts]") {
     Member torus = make_member("double_torus", {}, 0.0, false);
     const PantsDecomposition pants = decompose_into_pants(torus.mesh);
-    const PantsRecord record = record_pants(torus.mesh, pants, {}, torus.landmarks);
+    const PantsRecord record = record_pants(torus.mesh, pants, torus.landmarks);
     Member wheel = make_member("wheel", {}, 2.0 * default_edge_length("wheel"), false);
     REQUIRE_THROWS_WITH(replay_pants(wheel.mesh, record, {}, wheel.landmarks),
                         "replay: the surface has genus 3, the recorded one has 2");
     Member open = make_member("seal", {}, 0.0, true);
-    const PantsRecord of_seal = record_pants(open.mesh, decompose_into_pants(open.mesh),
-                                             open.boundary_names, open.landmarks);
+    const PantsRecord of_seal = record_pants(
+        open.mesh, decompose_into_pants(open.mesh, {.boundary_names = open.boundary_names}),
+        open.landmarks);
     Member closed = make_member("seal", {}, 0.0, false);
     REQUIRE_THROWS_WITH(replay_pants(closed.mesh, of_seal, {}, closed.landmarks),
                         "replay: the surface has 0 boundary loops, the recorded one has 2; open "

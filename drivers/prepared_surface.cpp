@@ -1,0 +1,152 @@
+#include "drivers/prepared_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "io/did_you_mean.h"
+#include "io/surface_reader.h"
+#include "meshing/parts/part_landmarks.h"
+#include "meshing/surface/caps.h"
+#include "meshing/topology/invariants.h"
+
+namespace couture::drivers {
+
+namespace {
+
+using namespace meshing;
+
+// Closed surfaces are oriented outwards.
+SurfaceMesh make_mesh(TriangleSoup soup) {
+    SurfaceMesh mesh = make_surface_mesh(soup);
+    if (compute_invariants(mesh).n_boundaries == 0 && signed_volume(mesh) < 0.0) {
+        log::warn("mesh: the surface is inside out (its volume is negative); it is turned round");
+        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+        mesh = make_surface_mesh(soup);
+    }
+    return mesh;
+}
+
+[[noreturn]] void unknown_name(const char* what, const std::string& part, const std::string& name,
+                               const std::vector<std::string>& names) {
+    const std::string help = io::did_you_mean(name, names);
+    throw InputError("mesh: the part '{}' has no {} '{}'{} There are {}", part, what, name,
+                     help.empty() ? "." : help, io::quoted_list(names));
+}
+
+// The faces of a part by their names: all its caps, or those that are asked for.
+void add_named_caps(const io::MeshDeck& deck, const PartSurface& part, const SurfaceMesh& mesh,
+                    std::vector<Cap>& caps) {
+    std::vector<std::string> names;
+    for (const PartFace& face : part.faces) names.push_back(face.name);
+    for (const std::string& name : deck.open.names) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            unknown_name("face", deck.part, name, names);
+        }
+    }
+    bool has_caps = false;
+    for (std::size_t f = 0; f < part.faces.size(); ++f) {
+        const auto& wanted = deck.open.names;
+        const bool is_named = std::find(wanted.begin(), wanted.end(), names[f]) != wanted.end();
+        has_caps = has_caps || part.faces[f].is_cap;
+        if (!is_named && !(deck.open.all && part.faces[f].is_cap)) continue;
+        const auto first = std::find(part.face_of_triangle.begin(), part.face_of_triangle.end(),
+                                     static_cast<int>(f));
+        const FaceHandle face(static_cast<int>(first - part.face_of_triangle.begin()));
+        caps.push_back({names[f], mesh.data(face).region});
+    }
+    if (deck.open.all && !has_caps) {
+        throw InputError("mesh: the part '{}' has no caps to open; name plane faces of {}",
+                         deck.part, io::quoted_list(names));
+    }
+}
+
+std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartSurface>& part,
+                             const SurfaceMesh& mesh, const Features& features) {
+    std::vector<Cap> caps;
+    if (part) {
+        add_named_caps(deck, *part, mesh, caps);
+    } else if (deck.open.all || !deck.open.names.empty()) {
+        throw InputError(
+            "mesh: faces of a file have no names to open them by; give points on them (open_at, "
+            "--open-at) or their normals (open_facing, --open-facing)");
+    }
+    const auto add = [&](int region, const std::string& name) {
+        const bool is_known = std::any_of(caps.begin(), caps.end(),
+                                          [&](const Cap& cap) { return cap.region == region; });
+        if (!is_known) caps.push_back({name, region});
+    };
+    for (std::size_t k = 0; k < deck.open.points.size(); ++k) {
+        add(region_near(mesh, deck.open.points[k]), fmt::format("at_{}", k + 1));
+    }
+    constexpr double degree = std::numbers::pi / 180.0;
+    for (std::size_t k = 0; k < deck.open.normals.size(); ++k) {
+        const Vector3& normal = deck.open.normals[k];
+        const auto regions = regions_facing(features, normal, degree);
+        if (regions.empty()) {
+            throw InputError(
+                "mesh: no plane face with one boundary loop faces ({:.6g}, {:.6g}, {:.6g}), to a "
+                "degree",
+                normal.x(), normal.y(), normal.z());
+        }
+        for (std::size_t r = 0; r < regions.size(); ++r) {
+            add(regions[r], fmt::format("facing_{}_{}", k + 1, r + 1));
+        }
+    }
+    return caps;
+}
+
+}  // namespace
+
+PreparedSurface prepare_surface(const io::MeshDeck& deck) {
+    std::optional<PartSurface> part;
+    TriangleSoup soup;
+    if (deck.part.empty()) {
+        soup = io::read_surface(deck.surface);
+    } else {
+        part = make_part_surface(deck.part, deck.parameters, deck.edge_length);
+        soup = part->soup;
+    }
+    PreparedSurface surface;
+    surface.mesh = make_mesh(std::move(soup));
+    if (part) surface.landmarks = part_landmarks(*part);
+    std::vector<Cap> caps;
+    std::vector<int> cap_of_vertex(surface.mesh.n_vertices(), -1);
+    if (!deck.open.is_empty()) {
+        const Features features = detect_features(surface.mesh, deck.features);
+        caps = select_caps(deck, part, surface.mesh, features);
+        OpenedSurface opened = open_caps(surface.mesh, features, caps);
+        surface.mesh = make_surface_mesh(opened.soup);
+        cap_of_vertex = std::move(opened.cap_of_vertex);
+    }
+    for (const BoundaryLoop& loop : boundary_loops(surface.mesh)) {
+        const int cap = cap_of_vertex[loop.vertices.front().idx()];
+        surface.boundary_names.push_back(cap >= 0 ? caps[cap].name : std::string());
+    }
+    return surface;
+}
+
+PantsOptions pants_options(const io::MeshDeck& deck, const PreparedSurface& surface) {
+    PantsOptions options = deck.pants;
+    options.boundary_names = surface.boundary_names;
+    for (const io::CycleThrough& cycle : deck.cycles_through) {
+        auto& points = options.cycles_through.emplace_back(cycle.points);
+        for (const std::string& name : cycle.corners) {
+            const auto& corners = surface.landmarks.corners;
+            const auto corner = corners.find(name);
+            if (corner == corners.end()) {
+                std::vector<std::string> names;
+                for (const auto& [known, x] : corners) names.push_back(known);
+                unknown_name("corner", deck.part, name, names);
+            }
+            points.push_back(corner->second);
+        }
+    }
+    return options;
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/mesh_deck.h"
+#include "meshing/surface/surface_mesh.h"
+#include "meshing/topology/pants_record.h"
+
+namespace couture::drivers {
+
+/// The surface of a job of meshing, oriented, with its caps taken off.
+struct PreparedSurface {
+    meshing::SurfaceMesh mesh;
+    /// Of its boundary loops (meshing::boundary_loops): the cap's, or empty.
+    std::vector<std::string> boundary_names;
+    /// Of parts; files have none.
+    meshing::Landmarks landmarks;
+};
+
+/// Reads or builds the surface that a deck names and opens the caps that it asks for.
+///
+/// @throws FileError, InputError, TopologyError  what reading, building and opening throws; for
+///                                               names of caps that the part does not have
+[[nodiscard]] PreparedSurface prepare_surface(const io::MeshDeck& deck);
+
+/// Options of the decomposition, with the corners that its cycles pass.
+///
+/// @throws InputError  for a corner that the part does not have: the nearest, and all
+[[nodiscard]] meshing::PantsOptions pants_options(const io::MeshDeck& deck,
+                                                  const PreparedSurface& surface);
+
+}  // namespace couture::drivers

@@ -1,0 +1,218 @@
+#include "io/mesh_deck.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <numbers>
+
+#include "iga/core/error.h"
+#include "io/atomic_file.h"
+#include "io/deck_readers.h"
+#include "io/quantity.h"
+#include "io/toml_file.h"
+
+namespace couture::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+void read_existing_file(Section& section, const std::string& key, const fs::path& folder,
+                        fs::path& path) {
+    const auto name = section.text(key);
+    if (!name) return;
+    path = folder / *name;
+    if (!fs::is_regular_file(path)) {
+        section.mistake(key, fmt::format("there is no file {} (paths are relative to the deck)",
+                                         path.string()));
+    }
+}
+
+// A list of points, each a list of three numbers.
+std::vector<Vector3> read_points(Section& section, const std::string& key,
+                                 const Dimension& dimension) {
+    std::vector<Vector3> points;
+    const TomlNode* list = section.find(key);
+    if (list == nullptr) return points;
+    if (list->kind != TomlNode::Kind::array) {
+        section.mistake(key, fmt::format("'{}' is {}, expected a list of points [[x, y, z], ...]",
+                                         key, list->kind_name()));
+        return points;
+    }
+    for (const TomlNode& item : list->items) {
+        TomlNode table;
+        table.place = item.place;
+        table.entries.emplace_back(key, item);
+        Section inner(table, section.title(), section.context());
+        if (item.kind != TomlNode::Kind::array) {
+            inner.mistake(key, fmt::format("'{}' holds {}, expected points [x, y, z]", key,
+                                           item.kind_name()));
+            continue;
+        }
+        const auto values = inner.numbers(key, dimension, {3});
+        if (values.size() == 3) points.emplace_back(values[0], values[1], values[2]);
+    }
+    return points;
+}
+
+void read_surface_geometry(Section& section, const fs::path& folder, MeshDeck& deck) {
+    if (section.has("surface") == section.has("part")) {
+        section.mistake(section.has("part") ? "part" : "",
+                        "[geometry] needs either 'surface' (a file of triangles) or 'part' (a "
+                        "built-in part)");
+    }
+    read_existing_file(section, "surface", folder, deck.surface);
+    deck.part = section.text("part").value_or("");
+    const TomlNode* table = section.find("parameters");
+    if (table == nullptr) return;
+    if (table->kind != TomlNode::Kind::table || deck.part.empty()) {
+        section.mistake("parameters", "[geometry.parameters] is a section that belongs to 'part'");
+        return;
+    }
+    Section inner(*table, "[geometry.parameters]", section.context());
+    for (const auto& [name, node] : table->entries) {
+        deck.parameters[name] = inner.number(name, dimensions::length).value_or(0.0);
+    }
+}
+
+// Only the terms that are named count.
+void read_criterion(Section& parent, const std::string& name, meshing::CriterionWeights& weights) {
+    const TomlNode* table = parent.find(name);
+    if (table == nullptr) return;
+    if (table->kind != TomlNode::Kind::table) {
+        parent.mistake(name, fmt::format("'{}' is {}, expected weights as {{ length = 1.0, "
+                                         "symmetry = 0.5 }}",
+                                         name, table->kind_name()));
+        return;
+    }
+    Section section(*table, fmt::format("[meshing.{}]", name), parent.context());
+    const auto read = [&](const char* key) {
+        return section.number(key, dimensions::none, not_negative).value_or(0.0);
+    };
+    weights = {.length = read("length"),
+               .symmetry = read("symmetry"),
+               .curvature = read("curvature"),
+               .sharp = read("sharp")};
+    section.finish();
+    if (weights.length + weights.symmetry + weights.curvature <= 0.0) {
+        parent.mistake(name, fmt::format("'{}' gives no weight to length, symmetry or curvature; "
+                                         "one must be positive",
+                                         name));
+    }
+}
+
+void read_open(Section& section, CapSelection& open) {
+    open.names = section.texts("open");
+    std::erase_if(open.names, [&](const std::string& name) {
+        if (name == "caps") open.all = true;
+        return name == "caps";
+    });
+    open.points = read_points(section, "open_at", dimensions::length);
+    open.normals = read_points(section, "open_facing", dimensions::none);
+}
+
+void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
+    meshing::PantsOptions& pants = deck.pants;
+    deck.stage =
+        section.choice("stage", {"surface", "features", "loops", "pants"}).value_or(deck.stage);
+    deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
+    if (deck.edge_length > 0.0 && deck.part.empty()) {
+        section.mistake("edge_length",
+                        "'edge_length' is for parts; a surface file is taken as it is");
+    }
+    constexpr double flat = 180.0;
+    const Range angles{.low = 0.0, .high = flat, .is_open = true};
+    if (const auto angle = section.number("feature_angle", dimensions::none, angles)) {
+        deck.features.angle = *angle * degree;
+    }
+    if (const auto angle = section.number("corner_angle", dimensions::none, angles)) {
+        deck.features.corner_angle = *angle * degree;
+    }
+    read_open(section, deck.open);
+    read_criterion(section, "cycle", pants.cycle);
+    read_criterion(section, "merge", pants.merge);
+    pants.most_boundaries =
+        section.integer("most_boundaries", 3, 6).value_or(pants.most_boundaries);
+    pants.merge_ratio =
+        section.number("merge_ratio", dimensions::none, positive).value_or(pants.merge_ratio);
+    pants.loop_width =
+        section.number("loop_width", dimensions::none, {.low = 0.0, .high = 1.0, .is_open = true})
+            .value_or(pants.loop_width);
+    for_each_entry(section, "loop", [&](Section& loop) {
+        meshing::GuideLoop guide{read_points(loop, "points", dimensions::length), {}};
+        if (guide.points.size() < 3) {
+            loop.mistake("points", fmt::format("a loop needs at least 3 'points', here are {}",
+                                               guide.points.size()));
+        }
+        pants.loops.push_back(std::move(guide));
+    });
+    for_each_entry(section, "cycle_through", [&](Section& cycle) {
+        CycleThrough through{read_points(cycle, "points", dimensions::length),
+                             cycle.texts("corners")};
+        if (through.points.empty() && through.corners.empty()) {
+            cycle.mistake("points", "[[meshing.cycle_through]] needs 'points' or 'corners'");
+        }
+        if (!through.corners.empty() && deck.part.empty()) {
+            cycle.mistake("corners", "'corners' are names of a part's; give 'points' on a surface");
+        }
+        deck.cycles_through.push_back(std::move(through));
+    });
+    read_existing_file(section, "like", folder, deck.like);
+    if (!deck.like.empty() && !(pants.loops.empty() && deck.cycles_through.empty())) {
+        section.mistake("like",
+                        "'like' repeats all cuts of another member: [[meshing.loop]] and "
+                        "[[meshing.cycle_through]] have no place beside it");
+    }
+}
+
+}  // namespace
+
+bool is_mesh_deck(const fs::path& path) {
+    const TomlNode document = parse_toml(read_text(path), path.filename().string());
+    const TomlNode* geometry = document.find("geometry");
+    return document.find("meshing") != nullptr ||
+           (geometry != nullptr && geometry->find("surface") != nullptr);
+}
+
+MeshDeck parse_mesh_deck(const std::string& text, const fs::path& path,
+                         const std::vector<std::string>& overrides) {
+    const std::string name = path.filename().string();
+    TomlNode document = parse_toml(text, name);
+    MeshDeck deck;
+    deck.path = path;
+    deck.text = text;
+    for (const std::string& assignment : overrides) {
+        override_value(document, assignment);
+        deck.text += fmt::format("\n# --set {}", assignment);
+    }
+    DeckContext context;
+    document.place = {};
+    document.place.source = name;
+    Section top(document, "", context);
+    deck.title = top.text("title").value_or(path.stem().string());
+    for_section(top, "units", [&](Section& section) {
+        try {
+            if (const auto system = section.text("system")) context.units = UnitSystem(*system);
+        } catch (const InputError& error) {
+            section.mistake("system", error.what());
+        }
+    });
+    deck.units = context.units;
+    const fs::path folder = path.parent_path();
+    if (top.require("geometry", "the section [geometry] with 'surface' or 'part'") != nullptr) {
+        for_section(top, "geometry",
+                    [&](Section& section) { read_surface_geometry(section, folder, deck); });
+    }
+    for_section(top, "meshing", [&](Section& section) { read_meshing(section, folder, deck); });
+    top.finish();
+    context.mistakes.throw_if_any();
+    return deck;
+}
+
+MeshDeck read_mesh_deck(const fs::path& path, const std::vector<std::string>& overrides) {
+    return parse_mesh_deck(read_text(path), path, overrides);
+}
+
+}  // namespace couture::io

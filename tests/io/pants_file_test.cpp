@@ -1,0 +1,62 @@
+#include "io/pants_file.h"
+
+#include <catch2/catch.hpp>
+
+#include "iga/core/error.h"
+#include "io/atomic_file.h"
+#include "meshing/parts/part_landmarks.h"
+#include "tests/io/temporary_folder.h"
+
+using namespace couture;
+using namespace couture::meshing;
+using Catch::Matchers::Contains;
+
+TEST_CASE("pants record: what is written is read again, to the last bit", "[io]") {
+    const PartSurface part = make_part_surface("plate_with_two_holes", {}, 8.0);
+    SurfaceMesh mesh = make_surface_mesh(part.soup);
+    const PantsDecomposition pants = decompose_into_pants(mesh);
+    const PantsRecord record = record_pants(mesh, pants, part_landmarks(part));
+    REQUIRE_FALSE(record.landmarks.corners.empty());
+    const io::TemporaryFolder folder;
+    const auto path = folder / "pants.json";
+    io::write_pants_record(path, record, "here");
+    const PantsRecord again = io::read_pants_record(path);
+    CHECK(again.genus == record.genus);
+    CHECK(again.box_min == record.box_min);
+    CHECK(again.box_max == record.box_max);
+    CHECK(again.landmarks.corners == record.landmarks.corners);
+    CHECK(again.landmarks.curves == record.landmarks.curves);
+    CHECK(again.landmarks.closed_curves == record.landmarks.closed_curves);
+    CHECK(again.patches == record.patches);
+    REQUIRE(again.curves.size() == record.curves.size());
+    for (std::size_t c = 0; c < record.curves.size(); ++c) {
+        CHECK(again.curves[c].kind == record.curves[c].kind);
+        CHECK(again.curves[c].name == record.curves[c].name);
+        CHECK(again.curves[c].shape.points == record.curves[c].shape.points);
+        CHECK(again.curves[c].shape.normals == record.curves[c].shape.normals);
+    }
+}
+
+TEST_CASE("pants record: files that hold something else are refused", "[io]") {
+    const io::TemporaryFolder folder;
+    const auto path = folder / "pants.json";
+    const auto refused = [&](const std::string& text, const std::string& message) {
+        io::write_text(path, text);
+        CAPTURE(text);
+        CHECK_THROWS_WITH(io::read_pants_record(path),
+                          Contains("pants.json: ") && Contains(message));
+    };
+    refused("", "no record of a decomposition");
+    refused("[1, 2]", "no record of a decomposition");
+    refused("{}", "'format' is ''");
+    const std::string head = R"({"format": "couture pants 1", "box": [[0,0,0],[1,1,1]], )"
+                             R"("genus": 0, "corners": {}, "feature_curves": {}, )";
+    refused(head + R"("curves": [], "patches": [[{"curve": 3, "left": true}]]})",
+            "a patch names curve 3; there are 0");
+    refused(head + R"("curves": [{"kind": "x", "name": "", "points": [], "normals": []}]})",
+            "'x' is no kind of curve");
+    refused(head + R"("curves": [{"kind": "cycle", "name": "", "points": [[0, 1]], )"
+                   R"("normals": []}]})",
+            "a point has 2 numbers");
+    CHECK_THROWS_AS(io::read_pants_record(folder / "no.json"), FileError);
+}
