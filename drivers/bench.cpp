@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "iga/assembly/assembler.h"
@@ -14,6 +15,9 @@
 #include "iga/core/timer.h"
 #include "iga/solve/linear_static.h"
 #include "iga/spline/shapes.h"
+#include "meshing/parts/part_surface.h"
+#include "meshing/topology/handle_tunnel_loops.h"
+#include "meshing/topology/pants.h"
 
 namespace couture::drivers {
 
@@ -96,6 +100,26 @@ SolveRow measure_solve(const std::string& solver, int degree, int n_elements) {
     return row;
 }
 
+CuttingRow measure_cutting(const std::string& part, double edge_length) {
+    const meshing::TriangleSoup soup = meshing::make_part_surface(part, {}, edge_length).soup;
+    CuttingRow row{part, static_cast<int>(soup.triangles.size())};
+    const int before = n_threads();
+    set_n_threads(1);
+    const Timer loops;
+    static_cast<void>(meshing::find_handle_tunnel_loops(meshing::CutSurface(soup)));
+    row.loops_seconds = loops.seconds();
+    const Timer pants;
+    meshing::SurfaceMesh mesh = meshing::make_surface_mesh(soup);
+    static_cast<void>(meshing::decompose_into_pants(mesh));
+    row.pants_seconds = pants.seconds();
+    set_n_threads(before);
+    return row;
+}
+
+double microseconds_per_n_log_n(double seconds, int n) {
+    return 1e6 * seconds / (n * std::log2(n));
+}
+
 }  // namespace
 
 BenchResult run_benchmarks(const BenchOptions& options) {
@@ -132,6 +156,14 @@ BenchResult run_benchmarks(const BenchOptions& options) {
             }
         }
     }
+    // About 2.5, 5, 10, 20, 50 and 100 thousand triangles.
+    const std::vector<double> edge_lengths =
+        options.quick ? std::vector<double>{8.7, 6.0}
+                      : std::vector<double>{8.7, 6.0, 4.3, 3.0, 1.93, 1.37};
+    for (const double edge_length : edge_lengths) {
+        log::info(fmt::format("loops and pants, edges of {}", edge_length));
+        result.cuts.push_back(measure_cutting("sierpinski", edge_length));
+    }
     return result;
 }
 
@@ -163,6 +195,15 @@ std::string bench_text(const BenchResult& result) {
                             row.solver, row.degree, row.n_elements, row.n_unknowns,
                             row.setup_seconds, row.solve_seconds, row.iterations, row.residual,
                             row.memory > 0.0 ? fmt::format("{:.0f}", 1e-6 * row.memory) : "-");
+    }
+    text +=
+        "\nLoops and pants: genus 5, one thread; pants with their loops; us over n log2 n\n"
+        "  part        triangles   loops s   pants s  loops us/nlogn  pants us/nlogn\n";
+    for (const CuttingRow& row : result.cuts) {
+        text += fmt::format("  {:10}  {:9}  {:8.2f}  {:8.2f}  {:14.2f}  {:14.2f}\n", row.part,
+                            row.n_triangles, row.loops_seconds, row.pants_seconds,
+                            microseconds_per_n_log_n(row.loops_seconds, row.n_triangles),
+                            microseconds_per_n_log_n(row.pants_seconds, row.n_triangles));
     }
     text += fmt::format("\nPeak memory of the process: {:.0f} MB\n", 1e-6 * peak_memory());
     return text;
@@ -199,6 +240,13 @@ std::string bench_json(const BenchResult& result) {
                                     {"iterations", row.iterations},
                                     {"residual", row.residual},
                                     {"memory_bytes", row.memory}});
+    }
+    json["cutting"] = nlohmann::ordered_json::array();
+    for (const CuttingRow& row : result.cuts) {
+        json["cutting"].push_back({{"part", row.part},
+                                   {"triangles", row.n_triangles},
+                                   {"loops_seconds", row.loops_seconds},
+                                   {"pants_seconds", row.pants_seconds}});
     }
     json["peak_memory_bytes"] = peak_memory();
     return json.dump(2);

@@ -37,6 +37,15 @@ struct SolveRow {
     double memory = 0.0;
 };
 
+/// Handle and tunnel loops, and the decomposition into pants (which looks for loops first), of a
+/// part of genus 5 on one thread.
+struct CuttingRow {
+    std::string part;
+    int n_triangles = 0;
+    double loops_seconds = 0.0;
+    double pants_seconds = 0.0;
+};
+
 struct BenchOptions {
     /// Fewer and smaller cases, a few seconds.
     bool quick = false;
@@ -48,6 +57,7 @@ struct BenchResult {
     std::vector<iga::MachineLimits> limits;
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
+    std::vector<CuttingRow> cuts;
 };
 
 [[nodiscard]] BenchResult run_benchmarks(const BenchOptions& options);

@@ -210,28 +210,37 @@ double quantum_of(double width) { return std::ldexp(1.0, std::ilogb(width) - 40)
 
 double rounded(double value, double quantum) { return std::round(value / quantum) * quantum; }
 
-// Both copies of each vertex of an opened annulus' seam, the one on the left side of the rectangle
-// first; upwards, ends included.
-std::vector<std::pair<int, int>> matching_seam(const CutSurface& disc, const Sides& sides,
-                                               const char* who) {
-    const auto right = side_of(sides, 1);
-    const auto left = side_of(sides, 3);
-    std::vector<std::pair<int, int>> seam;
+// Throws unless the right side of a seam, upwards, has the points of the left one, downwards.
+void check_seam(const CutSurface& disc, std::span<const int> right, std::span<const int> left,
+                const char* who) {
     bool is_matching = right.size() == left.size();
     for (std::size_t i = 0; is_matching && i <= right.size(); ++i) {
         const std::size_t n = left.size();
         const int a = i < n ? disc.target(left[n - 1 - i]) : disc.origin(left.front());
         const int b = i < n ? disc.origin(right[i]) : disc.target(right.back());
         is_matching = disc.point(a) == disc.point(b);
-        seam.emplace_back(a, b);
     }
     if (!is_matching) {
         throw GeometryError(
             "{}: the sides of the seam, {} edges from vertex {} and {} edges to vertex {}, don't "
-            "match point by point; name the corners as open_annulus returns them, and split no "
-            "seam edge after it",
+            "match point by point; name the corners as they were returned when the piece was "
+            "opened, and split no seam edge after it",
             who, right.size(), disc.origin(right.front()), left.size(), disc.target(left.back()));
     }
+}
+
+// Both copies of each vertex of an opened annulus' seam, the one on the left side of the rectangle
+// first; upwards, ends included.
+std::vector<std::pair<int, int>> matching_seam(const CutSurface& disc, const Sides& sides,
+                                               const char* who) {
+    const auto right = side_of(sides, 1);
+    const auto left = side_of(sides, 3);
+    check_seam(disc, right, left, who);
+    std::vector<std::pair<int, int>> seam;
+    for (std::size_t i = 0; i < right.size(); ++i) {
+        seam.emplace_back(disc.target(left[left.size() - 1 - i]), disc.origin(right[i]));
+    }
+    seam.emplace_back(disc.origin(left.front()), disc.target(right.back()));
     return seam;
 }
 
@@ -429,6 +438,54 @@ AnnulusMap map_opened_annulus(CutSurface& disc, const std::array<int, 4>& corner
     report.route = is_mean_value ? MapRoute::mean_value : MapRoute::uniform;
     report.distortion = map_distortion(disc, parameters);
     return {{std::move(parameters), report}, period, true};
+}
+
+HarmonicMap map_opened_pant(CutSurface& disc, const std::array<int, 8>& corners, double width,
+                            double height, const HarmonicMapOptions& options) {
+    const char* who = "map_opened_pant";
+    // Chords within a straight side of the rectangle are those to split.
+    const std::array outline{corners[0], corners[1], corners[4], corners[5]};
+    Sides straight = divide_boundary(disc, outline, who);
+    HarmonicMapReport report;
+    report.n_split_chords = split_chords_of_sides(
+        disc, straight, outline, [](int) { return true; }, who);
+    const Sides sides = divide_boundary(disc, corners, who);
+    // Each side part on the right has its like on the left.
+    std::array<double, 4> heights{};
+    for (int k = 1; k <= 3; ++k) {
+        const auto right = side_of(sides, k);
+        const auto left = side_of(sides, 8 - k);
+        double length = 0.0;
+        for (const int h : right) length += 0.5 * disc.length(h);
+        for (const int h : left) length += 0.5 * disc.length(h);
+        heights[k] = heights[k - 1] + length;
+        if (k != 2) check_seam(disc, right, left, who);
+    }
+    for (double& y : heights) y *= height / heights[3];
+    heights[3] = height;
+    std::vector<Vector2> outline_points = rectangle_corners(width, height);
+    const std::array<Vector2, 9> ends{
+        outline_points[0],          outline_points[1],        Vector2(width, heights[1]),
+        Vector2(width, heights[2]), outline_points[2],        outline_points[3],
+        Vector2(0.0, heights[2]),   Vector2(0.0, heights[1]), outline_points[0]};
+    std::vector<Vector2> parameters(disc.n_vertices(), Vector2::Zero());
+    for (int k = 0; k < 8; ++k) {
+        const auto side = side_of(sides, k);
+        const std::vector<double> fractions = arc_fractions(disc, side);
+        for (std::size_t i = 0; i < side.size(); ++i) {
+            parameters[disc.origin(side[i])] = ends[k] + fractions[i] * (ends[k + 1] - ends[k]);
+        }
+    }
+    // Both copies of a seam vertex at the same height, to the last bit.
+    for (const int k : {1, 3}) {
+        const auto right = side_of(sides, k);
+        const auto left = side_of(sides, 8 - k);
+        for (std::size_t i = 1; i < right.size(); ++i) {
+            parameters[disc.origin(left[left.size() - i])].y() =
+                parameters[disc.origin(right[i])].y();
+        }
+    }
+    return map_inside(disc, straight, parameters, options, report, who);
 }
 
 }  // namespace couture::meshing

@@ -115,4 +115,16 @@ struct AnnulusMap {
                                             double width, double height, bool is_periodic,
                                             const HarmonicMapOptions& options = {});
 
+/// The harmonic map of an opened pant to [0, width] x [0, height]: the first boundary goes to the
+/// lower side, the last one to the upper side, both seams and the two parts of the middle boundary
+/// to the others, each by arc length. Both copies of a seam vertex have the same height.
+///
+/// @param corners  as open_pant (open_pant.h) returns them
+/// @throws as map_disc_to_polygon; GeometryError if the two sides of a seam don't match
+///
+/// Source: [Maquart19] Eq. (2.30)-(2.32).
+[[nodiscard]] HarmonicMap map_opened_pant(CutSurface& disc, const std::array<int, 8>& corners,
+                                          double width, double height,
+                                          const HarmonicMapOptions& options = {});
+
 }  // namespace couture::meshing

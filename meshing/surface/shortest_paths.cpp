@@ -10,6 +10,32 @@ double ShortestPaths::weight(int h) const {
     return 0.5 * length * ((*factor_)[surface_->origin(h)] + (*factor_)[surface_->target(h)]);
 }
 
+template <typename Function>
+void ShortestPaths::for_each_step(int v, bool takes_boundary_edges,
+                                  const Function& function) const {
+    const int first = surface_->outgoing(v);
+    for (int h = first; h >= 0;) {
+        if (surface_->twin(h) >= 0 || takes_boundary_edges) {
+            function({weight(h), surface_->target(h), h});
+        }
+        const int behind = CutSurface::previous(h);
+        h = surface_->rotated(h);
+        if (h < 0 && takes_boundary_edges) {
+            function({weight(behind), surface_->origin(behind), -2 - behind});
+        }
+        if (h == first) break;
+    }
+}
+
+void ShortestPaths::prepare() {
+    steps_.clear();
+    first_step_.assign(1, 0);
+    for (int v = 0; v < surface_->n_vertices(); ++v) {
+        for_each_step(v, true, [&](const Step& step) { steps_.push_back(step); });
+        first_step_.push_back(static_cast<int>(steps_.size()));
+    }
+}
+
 int ShortestPaths::run(const Search& search) {
     for (const int v : touched_) state_[v] = {};
     touched_.clear();
@@ -42,17 +68,17 @@ int ShortestPaths::run(const Search& search) {
         if (search.is_target != nullptr && (*search.is_target)[v]) return v;
         if (state.arrival != -1 && search.is_blocked != nullptr && (*search.is_blocked)[v])
             continue;
-        const int first = surface_->outgoing(v);
-        for (int h = first; h >= 0;) {
-            if (surface_->twin(h) >= 0 || search.takes_boundary_edges) {
-                offer(surface_->target(h), distance + weight(h), h);
-            }
-            const int behind = CutSurface::previous(h);
-            h = surface_->rotated(h);
-            if (h < 0 && search.takes_boundary_edges) {
-                offer(surface_->origin(behind), distance + weight(behind), -2 - behind);
-            }
-            if (h == first) break;
+        if (first_step_.empty()) {
+            for_each_step(v, search.takes_boundary_edges, [&](const Step& step) {
+                offer(step.target, distance + step.weight, step.arrival);
+            });
+            continue;
+        }
+        for (int i = first_step_[v]; i < first_step_[v + 1]; ++i) {
+            const Step& step = steps_[i];
+            const bool is_boundary_edge = step.arrival < 0 || surface_->twin(step.arrival) < 0;
+            if (is_boundary_edge && !search.takes_boundary_edges) continue;
+            offer(step.target, distance + step.weight, step.arrival);
         }
     }
     return -1;

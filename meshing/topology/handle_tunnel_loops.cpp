@@ -10,7 +10,6 @@
 #include <queue>
 #include <set>
 #include <tuple>
-#include <unordered_map>
 
 #include "iga/core/error.h"
 #include "meshing/surface/shortest_paths.h"
@@ -24,6 +23,8 @@ namespace {
 using Class = std::vector<int>;
 
 enum class Kind { handle, tunnel };
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 // Closed path of halfedges, good until edges are split; its vertices are good for ever.
 struct Loop {
@@ -58,18 +59,33 @@ bool is_of_kind(const Class& c, const IntegerMatrix& projector, Kind kind) {
 class LoopPool {
   public:
     LoopPool(const AnnotatedSurface& annotated, const IntegerMatrix& projector)
-        : annotated_(annotated), projector_(projector), paths_(annotated.surface) {}
+        : annotated_(annotated), projector_(projector), paths_(annotated.surface) {
+        paths_.prepare();
+    }
 
-    // Loops through each source that consist of two shortest paths from it and one edge.
+    // Loops through each source that consist of two shortest paths from it and one edge. The
+    // surface must be as it was when the pool was made.
     void search(const std::vector<int>& sources, double longest) {
         const CutSurface& surface = annotated_.surface;
         is_blocked_.assign(surface.n_vertices(), 0);
+        searched_.resize(surface.n_vertices(), 0.0);
         for (int v = 0; v < surface.n_vertices(); ++v) {
             is_blocked_[v] = surface.is_boundary_vertex(v);
         }
         for (const int source : sources) {
-            if (!is_blocked_[source]) search_from(source, longest);
+            if (is_blocked_[source] || searched_[source] >= longest) continue;
+            search_from(source, longest);
+            searched_[source] = longest;
         }
+    }
+
+    // Loops that were found otherwise.
+    void add(const Loop& loop, Kind kind) {
+        const Class c = without_sign(loop.homology_class);
+        const auto known = best_.find(c);
+        if (known != best_.end() && known->second.length <= loop.length) return;
+        best_[c] = {kind, loop.length, -1, static_cast<int>(added_.size())};
+        added_.push_back(loop);
     }
 
     // The shortest loops of a kind that extend `chosen` to a primitive system, at most `n` of them.
@@ -97,6 +113,7 @@ class LoopPool {
     struct Seed {
         Kind kind;
         double length;
+        // -1: `halfedge` is a number of an added loop.
         int source;
         int halfedge;
     };
@@ -166,6 +183,7 @@ class LoopPool {
     }
 
     [[nodiscard]] Loop make_loop(const Seed& seed) {
+        if (seed.source < 0) return added_[seed.halfedge];
         const CutSurface& surface = annotated_.surface;
         paths_.run(
             {.sources = {&seed.source, 1}, .is_blocked = &is_blocked_, .limit = seed.length});
@@ -193,46 +211,86 @@ class LoopPool {
     const IntegerMatrix& projector_;
     ShortestPaths paths_;
     std::vector<char> is_blocked_;
+    // For each vertex the length up to which loops through it are known.
+    std::vector<double> searched_;
     std::vector<int> class_at_;
     std::vector<Class> met_;
     std::map<Class, Seed> best_;
     std::set<Class> is_neither_;
+    std::vector<Loop> added_;
 };
 
-// Shortest closed walk through a vertex whose class extends `chosen` to a primitive system of the
-// kind: Dijkstra's algorithm on pairs of a vertex and a class with entries up to `largest`. Needed
+IntegerMatrix transposed(const IntegerMatrix& rows, std::size_t n_columns) {
+    IntegerMatrix columns(n_columns, std::vector<long long>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (std::size_t j = 0; j < n_columns; ++j) columns[j][i] = rows[i][j];
+    }
+    return columns;
+}
+
+// Classes of a kind, as a basis.
+IntegerMatrix classes_of_kind(const IntegerMatrix& projector, Kind kind) {
+    IntegerMatrix matrix = projector;
+    if (kind == Kind::tunnel) {
+        for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] -= 1;
+    }
+    return left_kernel(matrix);
+}
+
+// Integer functions of classes that vanish on all rows, as a basis.
+IntegerMatrix functions_that_vanish(const IntegerMatrix& rows, int rank) {
+    return left_kernel(transposed(rows, static_cast<std::size_t>(rank)));
+}
+
+long long value_of(const std::vector<long long>& function, const Class& c) {
+    long long sum = 0;
+    for (std::size_t k = 0; k < c.size(); ++k) sum += function[k] * c[k];
+    return sum;
+}
+
+// Shortest closed walks through a vertex of whose class some functions have given values:
+// Dijkstra's algorithm on pairs of a vertex and the values so far, none beyond `largest`. Needed
 // for knotted tubes only, whose loops are no two shortest paths and an edge.
 class CoveringSearch {
   public:
-    CoveringSearch(const AnnotatedSurface& annotated, const IntegerMatrix& projector, Kind kind,
-                   const IntegerMatrix& chosen)
-        : annotated_(annotated), projector_(projector), kind_(kind), chosen_(chosen) {}
+    // The first function shall be 1 or -1, the others 0.
+    CoveringSearch(const AnnotatedSurface& annotated, const IntegerMatrix& functions, int largest)
+        : annotated_(annotated), largest_(largest) {
+        for (const Class& c : annotated.classes) {
+            Class& change = changes_.emplace_back();
+            for (const auto& f : functions) change.push_back(static_cast<int>(value_of(f, c)));
+        }
+    }
 
-    [[nodiscard]] std::optional<Loop> run(int source, int largest) {
+    [[nodiscard]] std::optional<Loop> run(int source, double longest) {
         const CutSurface& surface = annotated_.surface;
-        classes_.assign(1, Class(annotated_.rank, 0));
-        number_ = {{classes_.front(), 0}};
-        states_.clear();
+        const int n = surface.n_vertices();
+        values_.assign(1, Class(changes_.front().size(), 0));
+        number_ = {{values_.front(), 0}};
+        states_.assign(n, {});
         using Entry = std::tuple<double, int, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-        states_[{source, 0}] = {0.0, -1, 0, false};
+        const auto state_of = [&](int v, int c) -> State& {
+            return states_[static_cast<std::size_t>(c) * n + v];
+        };
+        state_of(source, 0) = {0.0, -1, 0, false};
         queue.emplace(0.0, source, 0);
         while (!queue.empty()) {
             const auto [distance, v, c] = queue.top();
             queue.pop();
-            State& state = states_.at({v, c});
+            if (distance >= longest) break;
+            State& state = state_of(v, c);
             if (state.is_settled) continue;
             state.is_settled = true;
-            if (v == source && c != 0 && is_wanted(classes_[c])) return loop_to(v, c);
-            if (states_.size() > most_states) return std::nullopt;
+            if (v == source && is_wanted(values_[c])) return loop_to(v, c);
             const int first = surface.outgoing(v);
             for (int h = first; h >= 0;) {
                 const int w = surface.target(h);
                 if (surface.twin(h) >= 0 && !surface.is_boundary_vertex(w)) {
-                    const int next = class_behind(c, h, largest);
+                    const int next = values_behind(c, h);
                     const double length = distance + surface.length(h);
                     if (next >= 0) {
-                        State& there = states_[{w, next}];
+                        State& there = state_of(w, next);
                         if (!there.is_settled && length < there.distance) {
                             there = {length, h, c, false};
                             queue.emplace(length, w, next);
@@ -252,57 +310,59 @@ class CoveringSearch {
     struct State {
         double distance = std::numeric_limits<double>::infinity();
         int arrival = -1;
-        int class_before = 0;
+        int values_before = 0;
         bool is_settled = false;
     };
-    struct Hash {
-        std::size_t operator()(const std::pair<int, int>& key) const {
-            return static_cast<std::size_t>(key.second) * 1000003U +
-                   static_cast<std::size_t>(key.first);
-        }
-    };
 
-    [[nodiscard]] bool is_wanted(const Class& c) const {
-        if (!is_of_kind(c, projector_, kind_)) return false;
-        IntegerMatrix rows = chosen_;
-        rows.emplace_back(c.begin(), c.end());
-        return is_primitive(rows);
+    static bool is_wanted(const Class& values) {
+        return std::abs(values.front()) == 1 &&
+               std::all_of(values.begin() + 1, values.end(), [](int x) { return x == 0; });
     }
 
-    int class_behind(int c, int h, int largest) {
+    int values_behind(int c, int h) {
         if (annotated_.annotation[h] == 0) return c;
-        Class sum = classes_[c];
-        const Class& change = annotated_.classes[annotated_.annotation[h]];
-        for (int k = 0; k < annotated_.rank; ++k) {
+        const Class& change = changes_[annotated_.annotation[h]];
+        Class sum = values_[c];
+        for (std::size_t k = 0; k < sum.size(); ++k) {
             sum[k] += change[k];
-            if (std::abs(sum[k]) > largest) return -1;
+            if (std::abs(sum[k]) > largest_) return -1;
         }
-        const auto [entry, is_new] = number_.try_emplace(sum, static_cast<int>(classes_.size()));
-        if (is_new) classes_.push_back(sum);
+        const auto [entry, is_new] = number_.try_emplace(sum, static_cast<int>(values_.size()));
+        if (is_new) {
+            const auto n = static_cast<std::size_t>(annotated_.surface.n_vertices());
+            if (states_.size() + n > most_states) {
+                number_.erase(entry);
+                return -1;
+            }
+            values_.push_back(sum);
+            states_.resize(states_.size() + n);
+        }
         return entry->second;
     }
 
     [[nodiscard]] Loop loop_to(int v, int c) const {
+        const auto n = static_cast<std::size_t>(annotated_.surface.n_vertices());
         Loop loop;
-        loop.homology_class = classes_[c];
-        loop.length = states_.at({v, c}).distance;
-        for (State state = states_.at({v, c}); state.arrival >= 0;) {
+        loop.length = states_[c * n + v].distance;
+        for (State state = states_[c * n + v]; state.arrival >= 0;) {
             loop.path.push_back(state.arrival);
             v = annotated_.surface.origin(state.arrival);
-            state = states_.at({v, state.class_before});
+            state = states_[state.values_before * n + v];
         }
         std::reverse(loop.path.begin(), loop.path.end());
         for (const int h : loop.path) loop.vertices.push_back(annotated_.surface.origin(h));
+        loop.homology_class = annotated_.class_of(loop.path);
         return loop;
     }
 
     const AnnotatedSurface& annotated_;
-    const IntegerMatrix& projector_;
-    Kind kind_;
-    const IntegerMatrix& chosen_;
-    std::vector<Class> classes_;
+    int largest_;
+    // For each class of an annotation.
+    std::vector<Class> changes_;
+    std::vector<Class> values_;
     std::map<Class, int> number_;
-    std::unordered_map<std::pair<int, int>, State, Hash> states_;
+    // By values, then vertex.
+    std::vector<State> states_;
 };
 
 bool is_simple(const CutSurface& surface, const std::vector<int>& path) {
@@ -319,10 +379,35 @@ std::vector<int> sample(const std::vector<int>& numbers, std::size_t n) {
     return chosen;
 }
 
-std::vector<int> vertices_of(const std::vector<Loop>& loops) {
-    std::set<int> vertices;
-    for (const Loop& loop : loops) vertices.insert(loop.vertices.begin(), loop.vertices.end());
-    return {vertices.begin(), vertices.end()};
+// Of fine loops not every vertex is a source: the shortest loop through a vertex is at most twice
+// the distance longer than the one through another vertex. Those near the best are looked at after.
+constexpr std::size_t n_sources_of_loop = 32;
+
+std::vector<int> spread_sources(const std::vector<Loop>& loops) {
+    std::vector<int> sources;
+    for (const Loop& loop : loops) {
+        const auto some = sample(loop.vertices, n_sources_of_loop);
+        sources.insert(sources.end(), some.begin(), some.end());
+    }
+    return sources;
+}
+
+// The vertices of `crossing` that lie between sources beside those that are on loops of `found`.
+std::vector<int> sources_beside(const std::vector<Loop>& found, const std::vector<Loop>& crossing) {
+    std::set<int> passed;
+    for (const Loop& loop : found) passed.insert(loop.vertices.begin(), loop.vertices.end());
+    std::set<int> sources;
+    for (const Loop& loop : crossing) {
+        const std::size_t n = loop.vertices.size();
+        const std::size_t spacing = n / n_sources_of_loop + 1;
+        for (std::size_t i = 0; i < n && spacing > 1; ++i) {
+            if (!passed.contains(loop.vertices[i])) continue;
+            for (std::size_t k = n + i - spacing; k <= n + i + spacing; ++k) {
+                sources.insert(loop.vertices[k % n]);
+            }
+        }
+    }
+    return {sources.begin(), sources.end()};
 }
 
 double longest_of(const std::vector<Loop>& loops) {
@@ -331,46 +416,72 @@ double longest_of(const std::vector<Loop>& loops) {
     return longest;
 }
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
+// The shortest simple loop through one of the sources on which `wanted` is 1 or -1 and all of
+// `zeros` vanish. Most of them do so of themselves: only those are tracked that did not.
+std::optional<Loop> shortest_knotted(const AnnotatedSurface& annotated,
+                                     const std::vector<long long>& wanted,
+                                     const IntegerMatrix& zeros, int largest,
+                                     const std::vector<int>& sources) {
+    IntegerMatrix tracked{wanted};
+    std::vector<bool> is_tracked(zeros.size(), false);
+    for (;;) {
+        CoveringSearch search(annotated, tracked, largest);
+        std::optional<Loop> best;
+        bool is_complete = true;
+        for (const int source : sources) {
+            if (annotated.surface.is_boundary_vertex(source)) continue;
+            const auto loop = search.run(source, best ? best->length : unlimited);
+            if (!loop || !is_simple(annotated.surface, loop->path)) continue;
+            best = loop;
+            for (std::size_t j = 0; j < zeros.size(); ++j) {
+                if (value_of(zeros[j], loop->homology_class) == 0 || is_tracked[j]) continue;
+                is_tracked[j] = true;
+                is_complete = false;
+                tracked.push_back(zeros[j]);
+            }
+            if (!is_complete) break;
+        }
+        if (is_complete) return best;
+    }
+}
 
-// Adds loops of knotted tubes until there are so many.
-void add_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& projector, Kind kind,
-                 const std::vector<int>& sources, IntegerMatrix chosen, int n_wanted,
-                 std::vector<Loop>& loops) {
+constexpr std::size_t n_covering_sources = 8;
+
+// At most n loops of knotted tubes that extend `chosen` to a primitive system.
+//
+// @param sources  vertices that such loops are likely to pass
+std::vector<Loop> find_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& projector,
+                               Kind kind, const std::vector<int>& sources,
+                               const IntegerMatrix& chosen, std::size_t n) {
+    std::vector<Loop> loops;
     long long largest_entry = 1;
     for (const auto& row : projector) {
         for (const long long entry : row)
             largest_entry = std::max(largest_entry, std::llabs(entry));
     }
-    for (const Loop& loop : loops) {
-        chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
-    }
+    const Kind other = kind == Kind::handle ? Kind::tunnel : Kind::handle;
+    const IntegerMatrix zeros =
+        functions_that_vanish(classes_of_kind(projector, kind), annotated.rank);
+    IntegerMatrix known = classes_of_kind(projector, other);
+    known.insert(known.end(), chosen.begin(), chosen.end());
     constexpr int n_doublings = 4;
     int largest = static_cast<int>(largest_entry) + 1;
-    for (int i = 0; i < n_doublings && static_cast<int>(loops.size()) < n_wanted;
-         ++i, largest *= 2) {
+    for (int i = 0; i < n_doublings && loops.size() < n;) {
+        // A class of the kind on which one of them is 1 extends the known ones to a basis.
         std::optional<Loop> best;
-        for (const int source : sources) {
-            if (annotated.surface.is_boundary_vertex(source)) continue;
-            const auto loop =
-                CoveringSearch(annotated, projector, kind, chosen).run(source, largest);
-            if (loop && is_simple(annotated.surface, loop->path) &&
-                (!best || loop->length < best->length)) {
-                best = loop;
-            }
+        for (const auto& wanted : functions_that_vanish(known, annotated.rank)) {
+            const auto loop = shortest_knotted(annotated, wanted, zeros, largest, sources);
+            if (loop && (!best || loop->length < best->length)) best = loop;
         }
-        if (!best) continue;
-        chosen.emplace_back(best->homology_class.begin(), best->homology_class.end());
-        loops.push_back(*best);
-        --i;
-        largest /= 2;
+        if (best) {
+            known.emplace_back(best->homology_class.begin(), best->homology_class.end());
+            loops.push_back(*best);
+        } else {
+            largest *= 2;
+            ++i;
+        }
     }
-    if (static_cast<int>(loops.size()) < n_wanted) {
-        throw TopologyError(
-            "handle and tunnel loops: found {} {} loops of {}, with classes up to {}; the surface "
-            "is knotted beyond that, or so coarse that no simple loop passes: refine it",
-            loops.size(), kind == Kind::handle ? "handle" : "tunnel", n_wanted, largest);
-    }
+    return loops;
 }
 
 // Splits the chords of a sliced surface, and the same edges of the one that is whole.
@@ -403,30 +514,38 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
         chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
         disjoint.push_back(std::move(loop));
     };
+    const auto is_met = [&](const Loop& loop) {
+        return std::any_of(loop.path.begin(), loop.path.end(),
+                           [&](int h) { return is_used[whole.surface.origin(h)]; });
+    };
     std::size_t n = 0;
-    for (; n < loops.size(); ++n) {
-        const bool meets = std::any_of(loops[n].vertices.begin(), loops[n].vertices.end(),
-                                       [&](int v) { return is_used[v]; });
-        if (meets) break;
-        accept(loops[n]);
-    }
+    for (; n < loops.size() && !is_met(loops[n]); ++n) accept(loops[n]);
     if (n == loops.size()) return disjoint;
 
     AnnotatedSurface sliced = whole;
     for (const Loop& loop : given) sliced.surface.slice(loop.path);
     for (const Loop& loop : disjoint) sliced.surface.slice(loop.path);
-    for (; n < loops.size(); ++n) {
+    while (n < loops.size()) {
         split_chords_of_both(sliced, whole);
         is_used.resize(whole.surface.n_vertices(), false);
-        std::vector<int> sources = vertices_of(crossing);
+        std::vector<int> sources = spread_sources(crossing);
         for (const auto& split : sliced.surface.splits()) sources.push_back(split.vertex);
         std::vector<Loop> found;
         LoopPool pool(sliced, projector);
-        for (double limit = 1.2 * loops[n].length;; limit *= 1.5) {
+        double limit = 1.05 * loops[n].length;
+        for (;; limit *= 1.25) {
             const bool is_last = limit > 100.0 * loops[n].length;
-            pool.search(sources, is_last ? unlimited : limit);
-            found = pool.shortest(kind, 1, chosen);
+            if (is_last) limit = unlimited;
+            pool.search(sources, limit);
+            const int n_missing = static_cast<int>(loops.size() - n);
+            found = pool.shortest(kind, n_missing, chosen);
+            pool.search(sources_beside(found, crossing), limit);
+            found = pool.shortest(kind, n_missing, chosen);
             if (is_last || (!found.empty() && found.front().length <= limit)) break;
+        }
+        if (found.empty()) {
+            found = find_knotted(sliced, projector, kind, sample(sources, n_covering_sources),
+                                 chosen, 1);
         }
         if (found.empty()) {
             // Narrow places are passed at vertices that no crossing loop has.
@@ -441,8 +560,15 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
                 "others; the surface is too coarse there: refine it",
                 kind == Kind::handle ? "handle" : "tunnel", n + 1, loops.size());
         }
-        accept(found.front());
-        sliced.surface.slice(found.front().path);
+        // Those behind the first one are as good, up to the first that meets one before it.
+        std::vector<std::vector<int>> cuts;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (i > 0 && (found[i].length > limit || is_met(found[i]))) break;
+            accept(found[i]);
+            cuts.push_back(found[i].path);
+            ++n;
+        }
+        for (const auto& cut : cuts) sliced.surface.slice(cut);
     }
     return disjoint;
 }
@@ -537,40 +663,60 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
     }
     const int n_handles = basis.genus - static_cast<int>(given_classes.size());
 
-    constexpr std::size_t n_first_sources = 64;
     LoopPool pool(annotated, result.projector);
-    pool.search(sample(all_sources, n_first_sources), unlimited);
+    std::vector<Loop> handles;
+    std::vector<Loop> tunnels;
     const auto n_of = [&](Kind kind) { return kind == Kind::handle ? n_handles : basis.genus; };
     const auto shortest = [&](Kind kind) {
         return pool.shortest(kind, n_of(kind),
                              kind == Kind::handle ? given_classes : IntegerMatrix{});
     };
-    std::vector<Loop> handles = shortest(Kind::handle);
-    std::vector<Loop> tunnels = shortest(Kind::tunnel);
     const auto is_short = [&](const std::vector<Loop>& loops, Kind kind) {
         return static_cast<int>(loops.size()) < n_of(kind);
     };
-    if (is_short(handles, Kind::handle) || is_short(tunnels, Kind::tunnel)) {
-        pool.search(all_sources, unlimited);
+    for (const std::size_t n_sources : {std::size_t{8}, std::size_t{64}, all_sources.size()}) {
+        pool.search(sample(all_sources, n_sources), unlimited);
         handles = shortest(Kind::handle);
         tunnels = shortest(Kind::tunnel);
+        if (!is_short(handles, Kind::handle) && !is_short(tunnels, Kind::tunnel)) break;
     }
-    constexpr std::size_t n_covering_sources = 8;
-    const auto covering_sources = sample(all_sources, n_covering_sources);
-    if (is_short(handles, Kind::handle)) {
-        add_knotted(annotated, result.projector, Kind::handle, covering_sources, given_classes,
-                    n_handles, handles);
-    }
-    if (is_short(tunnels, Kind::tunnel)) {
-        add_knotted(annotated, result.projector, Kind::tunnel, covering_sources, {}, basis.genus,
-                    tunnels);
-    }
+    // Loops of knotted tubes, from loops of the other kind if they are known, since those cross.
+    const auto complete = [&](std::vector<Loop>& loops, const std::vector<Loop>& crossing,
+                              Kind kind) {
+        std::vector<int> sources = sample(all_sources, n_covering_sources);
+        if (!is_short(crossing, kind == Kind::handle ? Kind::tunnel : Kind::handle)) {
+            sources.clear();
+            for (const Loop& loop : crossing) {
+                const auto some = sample(loop.vertices, n_covering_sources);
+                sources.insert(sources.end(), some.begin(), some.end());
+            }
+        }
+        IntegerMatrix chosen = kind == Kind::handle ? given_classes : IntegerMatrix{};
+        for (const Loop& loop : loops) {
+            chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
+        }
+        for (const Loop& loop : find_knotted(annotated, result.projector, kind, sources, chosen,
+                                             n_of(kind) - loops.size())) {
+            loops.push_back(loop);
+            pool.add(loop, kind);
+        }
+        if (is_short(loops, kind)) {
+            throw TopologyError(
+                "handle and tunnel loops: found {} {} loops of {}; the surface is knotted beyond "
+                "what is searched, or so coarse that no simple loop passes: refine it",
+                loops.size(), kind == Kind::handle ? "handle" : "tunnel", n_of(kind));
+        }
+    };
+    if (is_short(handles, Kind::handle)) complete(handles, tunnels, Kind::handle);
+    if (is_short(tunnels, Kind::tunnel)) complete(tunnels, handles, Kind::tunnel);
 
     // Each kind crosses the other: shorter ones are looked for from there.
     constexpr int n_rounds = 3;
     const auto improve = [&](std::vector<Loop>& loops, const std::vector<Loop>& crossing,
                              Kind kind) {
-        pool.search(vertices_of(crossing), longest_of(loops));
+        pool.search(spread_sources(crossing), longest_of(loops));
+        const auto near = shortest(kind);
+        pool.search(sources_beside(near, crossing), longest_of(loops));
         const auto shorter = shortest(kind);
         if (is_short(shorter, kind) || longest_of(shorter) >= longest_of(loops)) {
             const auto total = [](const std::vector<Loop>& list) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
-#include "iga/core/disjoint_sets.h"
 #include "iga/core/error.h"
-#include "meshing/surface/shortest_paths.h"
+#include "meshing/topology/tree_cotree.h"
 
 namespace couture::meshing {
 
@@ -140,48 +138,11 @@ HomologyBasis make_homology_basis(CutSurface surface) {
     basis.genus = (2 - surface.euler_characteristic()) / 2;
     const int rank = 2 * basis.genus;
 
-    // Tree of shortest paths.
     int root = 0;
     while (root < surface.n_vertices() && surface.outgoing(root) < 0) ++root;
-    ShortestPaths tree(surface);
-    tree.run({.sources = {&root, 1}});
-    std::vector<bool> is_in_tree(surface.n_halfedges(), false);
-    for (const int v : tree.settled()) {
-        const int h = tree.arrival(v);
-        if (h < 0) continue;
-        is_in_tree[h] = is_in_tree[surface.twin(h)] = true;
-    }
-
-    // Maximum spanning cotree over the other edges; those left over close the loops.
-    struct Rest {
-        double loop_length;
-        int halfedge;
-    };
-    std::vector<Rest> rest;
-    for (int h = 0; h < surface.n_halfedges(); ++h) {
-        if (h > surface.twin(h) || is_in_tree[h]) continue;
-        rest.push_back({tree.distance(surface.origin(h)) + tree.distance(surface.target(h)) +
-                            surface.length(h),
-                        h});
-    }
-    std::sort(rest.begin(), rest.end(), [](const Rest& a, const Rest& b) {
-        return a.loop_length != b.loop_length ? a.loop_length > b.loop_length
-                                              : a.halfedge < b.halfedge;
-    });
-    DisjointSets sets(surface.n_faces());
-    std::vector<std::vector<int>> crossings(surface.n_faces());
-    std::vector<int> generators;
-    for (const auto& [length, h] : rest) {
-        const int left = CutSurface::face(h);
-        const int right = CutSurface::face(surface.twin(h));
-        if (sets.find(left) == sets.find(right)) {
-            generators.push_back(h);
-            continue;
-        }
-        sets.join(left, right);
-        crossings[left].push_back(h);
-        crossings[right].push_back(surface.twin(h));
-    }
+    const TreeCotree tree_cotree = make_tree_cotree(surface, {&root, 1});
+    const ShortestPaths& tree = tree_cotree.tree;
+    const std::vector<int>& generators = tree_cotree.generators;
     if (static_cast<int>(generators.size()) != rank) {
         throw TopologyError("homology basis: {} loops for genus {}; there must be twice as many",
                             generators.size(), basis.genus);
@@ -205,8 +166,8 @@ HomologyBasis make_homology_basis(CutSurface surface) {
         // b*_i: across h from right to left, and back through the cotree.
         auto& dual = basis.dual_loops.emplace_back();
         dual.push_back(surface.twin(h));
-        const auto path =
-            forest_path(surface, crossings, CutSurface::face(h), CutSurface::face(surface.twin(h)));
+        const auto path = forest_path(surface, tree_cotree.cotree, CutSurface::face(h),
+                                      CutSurface::face(surface.twin(h)));
         dual.insert(dual.end(), path.begin(), path.end());
         // Crossing a halfedge from right to left counts +1 for it: it is crossed from its triangle.
         for (const int crossed : dual) {

@@ -195,6 +195,12 @@ TEST_CASE("couture bench: every line has a time and a share of the machine", "[d
     for (const Json& row : numbers["solution"]) {
         CHECK(row["residual"] <= 1e-8);
     }
+    CHECK(numbers["cutting"].size() == 2);
+    for (const Json& row : numbers["cutting"]) {
+        CHECK(row["triangles"] > 2000);
+        CHECK(row["loops_seconds"] > 0.0);
+        CHECK(row["pants_seconds"] > 0.0);
+    }
 }
 
 TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {

@@ -1,6 +1,9 @@
 #include "tests/meshing/surface/public_surfaces.h"
 
 #include <fstream>
+#include <sstream>
+
+#include "tests/meshing/surface/stl_samples.h"
 
 namespace couture::meshing {
 
@@ -37,6 +40,50 @@ TriangleSoup read_off(const std::filesystem::path& path) {
         }
     }
     return soup;
+}
+
+namespace {
+
+TriangleSoup read_obj(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    TriangleSoup soup;
+    std::string line;
+    while (std::getline(file, line)) {
+        std::istringstream words(line);
+        std::string word;
+        words >> word;
+        if (word == "v") {
+            Vector3& point = soup.points.emplace_back();
+            words >> point.x() >> point.y() >> point.z();
+        } else if (word == "f") {
+            // Numbers of points count from 1; those of texture and normal follow a slash.
+            std::vector<int> corners;
+            while (words >> word) corners.push_back(std::stoi(word) - 1);
+            for (std::size_t k = 2; k < corners.size(); ++k) {
+                soup.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+            }
+        }
+    }
+    return soup;
+}
+
+}  // namespace
+
+const std::vector<std::string>& public_surface_files() {
+    static const std::vector<std::string> files = [] {
+        std::vector<std::string> names{
+            "fandisk.obj",         "mambo_B0.obj",          "oded_torus.obj",
+            "openfoam_flange.stl", "openfoam_pipeWall.obj", "vampy_artery.stl",
+            "vampy_vein.stl",      "vampy_ventricle.stl",   "wingnut.obj"};
+        for (const PublicSurface& surface : public_surfaces()) names.push_back(surface.file);
+        return names;
+    }();
+    return files;
+}
+
+TriangleSoup read_surface(const std::filesystem::path& path) {
+    if (path.extension() == ".obj") return read_obj(path);
+    return path.extension() == ".stl" ? read_stl(path) : read_off(path);
 }
 
 }  // namespace couture::meshing

@@ -24,4 +24,10 @@ struct PublicSurface {
 /// Polygons are divided into fans.
 [[nodiscard]] TriangleSoup read_off(const std::filesystem::path& path);
 
+/// All public surfaces that are oriented manifolds in one piece, in any format.
+[[nodiscard]] const std::vector<std::string>& public_surface_files();
+
+/// A file in OFF, OBJ (its points and faces) or STL format.
+[[nodiscard]] TriangleSoup read_surface(const std::filesystem::path& path);
+
 }  // namespace couture::meshing

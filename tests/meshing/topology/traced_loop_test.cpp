@@ -137,13 +137,15 @@ TEST_CASE("pants: loops that are no cuts are refused", "[topology][parts]") {
                             Catch::Contains("bounds no surface inside the solid: it runs around a "
                                             "hole"));
     }
-    SECTION("twice the same") {
+    SECTION("beside each other") {
         PantsOptions options;
         GuideLoop loop;
         for (const VertexHandle v : plain.curves[0].curve.vertices) {
             loop.points.push_back(member.mesh.point(v));
         }
-        options.loops = {loop, loop};
+        GuideLoop beside = loop;
+        for (Vector3& x : beside.points) x.x() += 3.0 * default_edge_length("double_torus");
+        options.loops = {loop, beside};
         Member fresh = make_member("double_torus", {}, 0.0, false);
         REQUIRE_THROWS_WITH(decompose_into_pants(fresh.mesh, options),
                             Catch::Contains("a cylinder is cut off by curve 0, 1"));
