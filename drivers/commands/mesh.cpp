@@ -1,44 +1,25 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <charconv>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "drivers/commands/commands.h"
 #include "drivers/mesh_stages.h"
+#include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
-#include "io/surface_reader.h"
-#include "meshing/parts/part_surface.h"
 
 namespace couture::drivers {
 
 namespace {
-
-// "name=value" with a number.
-std::pair<std::string, double> read_setting(const std::string& setting, const char* option) {
-    const std::size_t sign = setting.find('=');
-    double value = 0.0;
-    if (sign != std::string::npos) {
-        const char* first = setting.data() + sign + 1;
-        const char* end = setting.data() + setting.size();
-        const auto [stop, error] = std::from_chars(first, end, value);
-        if (error == std::errc() && stop == end && first != end) {
-            return {setting.substr(0, sign), value};
-        }
-    }
-    throw InputError("mesh: {} '{}' is no setting; write NAME=NUMBER", option, setting);
-}
 
 meshing::CriterionWeights read_weights(const std::vector<std::string>& settings,
                                        const char* option) {
     meshing::CriterionWeights weights;
     if (!settings.empty()) weights.length = 0.0;
     for (const std::string& setting : settings) {
-        const auto [name, value] = read_setting(setting, option);
+        const auto [name, value] = read_setting("mesh", setting, option);
         if (name == "length") {
             weights.length = value;
         } else if (name == "symmetry") {
@@ -54,40 +35,6 @@ meshing::CriterionWeights read_weights(const std::vector<std::string>& settings,
         }
     }
     return weights;
-}
-
-bool is_part(const std::string& name) {
-    const auto& parts = meshing::part_surfaces();
-    return std::any_of(parts.begin(), parts.end(),
-                       [&](const meshing::PartInfo& part) { return part.name == name; });
-}
-
-meshing::TriangleSoup load_surface(const MeshOptions& options) {
-    if (std::filesystem::exists(options.surface) || !is_part(options.surface)) {
-        if (!options.overrides.empty() || options.edge_length != 0.0) {
-            throw InputError(
-                "mesh: --set and --edge-length are for parts; '{}' is a file, which is taken as "
-                "it is",
-                options.surface);
-        }
-        return io::read_surface(options.surface);
-    }
-    std::map<std::string, double> parameters;
-    for (const std::string& setting : options.overrides) {
-        parameters.insert(read_setting(setting, "--set"));
-    }
-    return meshing::make_part_surface(options.surface, parameters, options.edge_length).soup;
-}
-
-// Closed surfaces are oriented outwards.
-meshing::SurfaceMesh make_mesh(meshing::TriangleSoup soup) {
-    meshing::SurfaceMesh mesh = meshing::make_surface_mesh(soup);
-    if (meshing::compute_invariants(mesh).n_boundaries == 0 && meshing::signed_volume(mesh) < 0.0) {
-        log::warn("mesh: the surface is inside out (its volume is negative); it is turned round");
-        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-        mesh = meshing::make_surface_mesh(soup);
-    }
-    return mesh;
 }
 
 nlohmann::ordered_json to_json(const MeshStages& stages) {
@@ -160,14 +107,21 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
         .progress = [](std::string_view what, double fraction) {
             log::detail(fmt::format("{} ({:.0f} %)", what, 100.0 * fraction));
         }};
-    const Timer timer;
-    const MeshStages stages =
-        run_mesh_stages(make_mesh(load_surface(options)), last, features, pants);
-    const double seconds = timer.seconds();
 
     const std::string name = std::filesystem::path(options.surface).stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
+    const Timer timer;
+    const io::DescribedSurface surface = load_surface("mesh", {.surface = options.surface,
+                                                               .overrides = options.overrides,
+                                                               .edge_length = options.edge_length,
+                                                               .fix = options.fix,
+                                                               .fill_holes = options.fill_holes,
+                                                               .shell = options.shell});
+    const MeshStages stages =
+        run_mesh_stages(make_checked_mesh("mesh", surface, folder / (name + "_problems.vtp")), last,
+                        features, pants);
+    const double seconds = timer.seconds();
     const std::string provenance = fmt::format("couture {} mesh {} --stage {}", COUTURE_VERSION,
                                                options.surface, options.stage);
     std::vector<std::string> files;
