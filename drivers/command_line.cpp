@@ -38,6 +38,18 @@ void add_deck_options(CLI::App* sub, SolveOptions& options) {
                     "pressure.0.value=5)");
 }
 
+/// What is told about a surface besides its name.
+template <typename Options>
+void add_surface_options(CLI::App* sub, Options& options) {
+    sub->add_option("--set", options.overrides,
+                    "a dimension of the part: NAME=VALUE (of a deck section.key=value)");
+    sub->add_option("--edge-length", options.edge_length, "of the part's triangles");
+    sub->add_flag("--fix", options.fix,
+                  "also weld near points, remove flat triangles, part what touches at a vertex");
+    sub->add_flag("--fill-holes", options.fill_holes, "close the surface at every boundary loop");
+    sub->add_option("--shell", options.shell, "take one shell of several, counted from 0");
+}
+
 /// A word that is no command gets a message of its own: CLI11's names no alternatives.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') {
@@ -71,7 +83,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     // The callbacks outlive this function.
     const auto solve = std::make_shared<SolveOptions>();
     const auto compare = std::make_shared<CompareOptions>();
-    const auto from = std::make_shared<std::string>();
+    const auto from = std::make_shared<SurfaceInputOptions>();
     const auto to = std::make_shared<std::string>();
     CLI::App app("Couture: isogeometric analysis of solids");
     app.set_version_flag("--version", "couture " COUTURE_VERSION);
@@ -96,14 +108,12 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                       [&command, mesh] { return run_mesh(*mesh, command.common); });
     sub->add_option(
            "surface", mesh->surface,
-           "a surface file (.stl, .obj, .off), the name of a part (wheel, seal, ...), or a "
+           "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), or a "
            "deck (.toml)")
         ->required();
     sub->add_option("--stage", mesh->stage,
                     "the last stage: surface, features, loops, pants (default)");
-    sub->add_option("--set", mesh->overrides,
-                    "a dimension of the part: NAME=VALUE; with a deck section.key=value");
-    sub->add_option("--edge-length", mesh->edge_length, "of the part's triangles");
+    add_surface_options(sub, *mesh);
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
     sub->add_option("--open", mesh->open,
@@ -123,14 +133,24 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");
 
-    sub = add_command(app, command, "info", "say what a spline file holds",
+    sub = add_command(app, command, "info", "say what a spline or surface file holds",
                       [&command, from] { return run_info(*from, command.common); });
-    sub->add_option("file", *from, "a spline file")->required();
+    sub->add_option("file", from->surface,
+                    "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), or the name of "
+                    "a part")
+        ->required();
+    add_surface_options(sub, *from);
 
-    sub = add_command(app, command, "convert", "write a spline file in another format",
+    sub = add_command(app, command, "convert", "write a spline or surface file in another format",
                       [&command, from, to] { return run_convert(*from, *to, command.common); });
-    sub->add_option("in", *from, "a spline file, or a deck (its geometry)")->required();
-    sub->add_option("out", *to, "the extension decides: .xml, .mesh, .txt, .inp, .h5")->required();
+    sub->add_option("in", from->surface,
+                    "a spline file, a deck (its geometry), a surface file, or the name of a part")
+        ->required();
+    sub->add_option("out", *to,
+                    "the extension decides: .xml, .mesh, .txt, .inp, .h5 for splines, .stl, .obj, "
+                    ".off, .ply, .vtp for surfaces")
+        ->required();
+    add_surface_options(sub, *from);
 
     const auto verify = std::make_shared<VerifyOptions>();
     sub = add_command(app, command, "verify", "solve problems with known answers and compare",

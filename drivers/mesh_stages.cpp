@@ -176,9 +176,9 @@ MeshStage read_mesh_stage(const std::string& name) {
 
 std::string to_string(MeshStage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
-MeshStages run_mesh_stages(const io::MeshDeck& deck) {
+MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file) {
     const MeshStage last = read_mesh_stage(deck.stage);
-    PreparedSurface surface = prepare_surface(deck);
+    PreparedSurface surface = prepare_surface(deck, problems_file);
     PantsOptions options = pants_options(deck, surface);
     const Timer timer;
     double last_said = 0.0;

@@ -33,8 +33,10 @@ struct MeshStages {
 
 /// Runs the stages of a deck up to the one that it names. Says what it does once a second.
 ///
+/// @param problems_file  see make_checked_mesh
 /// @throws what the stages throw
-[[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck);
+[[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck,
+                                         const std::filesystem::path& problems_file);
 
 /// Writes what a stage shows as STEM.vtp, and with `png` as STEM.png.
 ///

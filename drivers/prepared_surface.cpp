@@ -6,10 +6,9 @@
 #include <numbers>
 #include <optional>
 
+#include "drivers/surface_input.h"
 #include "iga/core/error.h"
-#include "iga/core/log.h"
 #include "io/did_you_mean.h"
-#include "io/surface_reader.h"
 #include "meshing/parts/part_landmarks.h"
 #include "meshing/surface/caps.h"
 #include "meshing/topology/invariants.h"
@@ -19,17 +18,6 @@ namespace couture::drivers {
 namespace {
 
 using namespace meshing;
-
-// Closed surfaces are oriented outwards.
-SurfaceMesh make_mesh(TriangleSoup soup) {
-    SurfaceMesh mesh = make_surface_mesh(soup);
-    if (compute_invariants(mesh).n_boundaries == 0 && signed_volume(mesh) < 0.0) {
-        log::warn("mesh: the surface is inside out (its volume is negative); it is turned round");
-        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-        mesh = make_surface_mesh(soup);
-    }
-    return mesh;
-}
 
 [[noreturn]] void unknown_name(const char* what, const std::string& part, const std::string& name,
                                const std::vector<std::string>& names) {
@@ -102,17 +90,20 @@ std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartS
 
 }  // namespace
 
-PreparedSurface prepare_surface(const io::MeshDeck& deck) {
-    std::optional<PartSurface> part;
-    TriangleSoup soup;
-    if (deck.part.empty()) {
-        soup = io::read_surface(deck.surface);
-    } else {
-        part = make_part_surface(deck.part, deck.parameters, deck.edge_length);
-        soup = part->soup;
-    }
+PreparedSurface prepare_surface(const io::MeshDeck& deck,
+                                const std::filesystem::path& problems_file) {
+    const std::string source = deck.part.empty() ? deck.surface.string() : deck.part;
+    const io::DescribedSurface described =
+        load_surface("mesh", {.surface = source,
+                              .overrides = {},
+                              .parameters = deck.parameters,
+                              .edge_length = deck.edge_length,
+                              .fix = deck.fix,
+                              .fill_holes = deck.fill_holes,
+                              .shell = deck.shell});
+    const std::optional<PartSurface>& part = described.part;
     PreparedSurface surface;
-    surface.mesh = make_mesh(std::move(soup));
+    surface.mesh = make_checked_mesh("mesh", described, problems_file);
     if (part) surface.landmarks = part_landmarks(*part);
     std::vector<Cap> caps;
     std::vector<int> cap_of_vertex(surface.mesh.n_vertices(), -1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct PreparedSurface {
 
 /// Reads or builds the surface that a deck names and opens the caps that it asks for.
 ///
-/// @throws FileError, InputError, TopologyError  what reading, building and opening throws; for
-///                                               names of caps that the part does not have
-[[nodiscard]] PreparedSurface prepare_surface(const io::MeshDeck& deck);
+/// @param problems_file  see make_checked_mesh
+/// @throws what load_surface, make_checked_mesh and open_caps throw; InputError for names of caps
+///         that the part does not have
+[[nodiscard]] PreparedSurface prepare_surface(const io::MeshDeck& deck,
+                                              const std::filesystem::path& problems_file);
 
 /// Options of the decomposition, with the corners that its cycles pass.
 ///

@@ -122,6 +122,10 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.mistake("edge_length",
                         "'edge_length' is for parts; a surface file is taken as it is");
     }
+    deck.fix = section.flag("fix").value_or(false);
+    deck.fill_holes = section.flag("fill_holes").value_or(false);
+    constexpr int most_shells = 1'000'000;
+    deck.shell = section.integer("shell", 0, most_shells);
     constexpr double flat = 180.0;
     const Range angles{.low = 0.0, .high = flat, .is_open = true};
     if (const auto angle = section.number("feature_angle", dimensions::none, angles)) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,11 @@ struct MeshDeck {
     std::map<std::string, double> parameters;
     /// Of a part's triangles; 0: its own.
     double edge_length = 0.0;
+
+    /// As in drivers::SurfaceInputOptions.
+    bool fix = false;
+    bool fill_holes = false;
+    std::optional<int> shell;
 
     /// The last stage that is made.
     std::string stage = "pants";

@@ -65,8 +65,9 @@ Format format_of_extension(const std::filesystem::path& path) {
     if (extension == ".h5") {
         return Format::hdf5;
     }
-    throw FileError("{}: unknown extension '{}'; expected one of {}", path.string(), extension,
-                    known_formats);
+    throw FileError(
+        "{}: unknown extension '{}'; expected one of {}; of surfaces .stl, .obj, .off, .ply, .vtp",
+        path.string(), extension, known_formats);
 }
 
 /// From the first bytes, else from the extension.

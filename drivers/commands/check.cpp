@@ -69,7 +69,9 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
 
 // The surface is read and opened, its corners and the record are found; nothing is cut.
 int check_mesh_deck(const io::MeshDeck& deck, const CommonOptions& common) {
-    const PreparedSurface surface = prepare_surface(deck);
+    const PreparedSurface surface =
+        prepare_surface(deck, std::filesystem::path("out") / deck.path.stem() /
+                                  (deck.path.stem().string() + "_problems.vtp"));
     static_cast<void>(pants_options(deck, surface));
     if (!deck.like.empty()) static_cast<void>(io::read_pants_record(deck.like));
     const std::string name = meshing::surface_name(surface.mesh);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/surface_input.h"
+
 namespace couture::drivers {
 
 /// Exit codes of the program.
@@ -52,6 +54,10 @@ struct MeshOptions {
     std::filesystem::path like;
     /// Edge length of a part's triangles; 0: its default.
     double edge_length = 0.0;
+    /// As in SurfaceInputOptions.
+    bool fix = false;
+    bool fill_holes = false;
+    std::optional<int> shell;
     /// Empty: out/<name> below the working folder.
     std::filesystem::path out;
     bool png = false;
@@ -80,8 +86,9 @@ struct VerifyOptions {
 int run_solve(const SolveOptions& options, const CommonOptions& common);
 int run_check(const SolveOptions& options, const CommonOptions& common);
 int run_mesh(const MeshOptions& options, const CommonOptions& common);
-int run_info(const std::filesystem::path& file, const CommonOptions& common);
-int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
+/// The options' surface may be a spline file here.
+int run_info(const SurfaceInputOptions& options, const CommonOptions& common);
+int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);

@@ -4,7 +4,9 @@
 
 #include "drivers/commands/commands.h"
 #include "drivers/job_geometry.h"
+#include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "io/surface_file.h"
 
 namespace couture::drivers {
 
@@ -21,11 +23,59 @@ io::AnyMultiPatch read_any(const std::filesystem::path& path) {
     return std::move(file.multipatch);
 }
 
+int convert_surface(const SurfaceInputOptions& from, const std::filesystem::path& to,
+                    const CommonOptions& common) {
+    if (!io::is_surface_file(to)) {
+        throw InputError(
+            "convert: {} is a surface of triangles; it can be written as .stl, .obj, .off, .ply or "
+            ".vtp, not as {}: splines have to be fitted to it, which meshing does",
+            from.surface, to.string());
+    }
+    const io::DescribedSurface surface = load_surface("convert", from);
+    for (const std::string& line : io::describe_changes(surface)) {
+        log::info(fmt::format("{}: {}", from.surface, line));
+    }
+    std::vector<std::string> warnings;
+    for (const std::string& line : meshing::summarize(surface.check, 1)) {
+        if (!line.starts_with("  ")) {
+            warnings.push_back(
+                fmt::format("{}: {}", from.surface, line.substr(0, line.size() - 1)));
+        }
+    }
+    const std::string provenance =
+        fmt::format("couture {} convert {}", COUTURE_VERSION, from.surface);
+    for (const std::string& warning : io::write_surface(to, surface.soup, provenance)) {
+        warnings.push_back(warning);
+    }
+    for (const std::string& warning : warnings) log::warn(warning);
+    if (common.json) {
+        const nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                               {"status", "done"},
+                                               {"points", surface.soup.points.size()},
+                                               {"triangles", surface.soup.triangles.size()},
+                                               {"warnings", warnings},
+                                               {"files", {to.string()}}};
+        fmt::print("{}\n",
+                   object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    } else if (!common.quiet) {
+        fmt::print("wrote {} ({} points, {} triangles)\n", to.string(), surface.soup.points.size(),
+                   surface.soup.triangles.size());
+    }
+    return ExitCode::done;
+}
+
 }  // namespace
 
-int run_convert(const std::filesystem::path& from, const std::filesystem::path& to,
+int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common) {
-    const io::AnyMultiPatch multipatch = read_any(from);
+    if (is_surface_input(from.surface)) return convert_surface(from, to, common);
+    if (io::is_surface_file(to)) {
+        throw InputError(
+            "convert: {} is a spline file or deck, {} a surface of triangles; splines can be "
+            "written as .xml, .mesh, .txt, .inp or .h5",
+            from.surface, to.string());
+    }
+    const io::AnyMultiPatch multipatch = read_any(from.surface);
     io::write_splines(to, multipatch);
     const int n_patches =
         std::visit([](const auto& patches) { return patches.n_patches(); }, multipatch);

@@ -2,11 +2,18 @@
 
 #include "drivers/commands/commands.h"
 #include "io/spline_info.h"
+#include "io/surface_info.h"
 
 namespace couture::drivers {
 
-int run_info(const std::filesystem::path& path, const CommonOptions& common) {
-    const io::SplineFile file = io::read_splines(path);
+int run_info(const SurfaceInputOptions& options, const CommonOptions& common) {
+    if (is_surface_input(options.surface)) {
+        const io::DescribedSurface surface = load_surface("info", options);
+        fmt::print("{}\n",
+                   common.json ? io::surface_info_json(surface) : io::surface_info_text(surface));
+        return ExitCode::done;
+    }
+    const io::SplineFile file = io::read_splines(options.surface);
     fmt::print("{}\n", common.json ? io::spline_info_json(file) : io::spline_info_text(file));
     return ExitCode::done;
 }

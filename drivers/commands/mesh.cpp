@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -10,11 +9,10 @@
 #include "drivers/commands/commands.h"
 #include "drivers/hash.h"
 #include "drivers/mesh_stages.h"
+#include "drivers/surface_input.h"
 #include "iga/core/error.h"
-#include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/mesh_deck.h"
-#include "meshing/parts/part_surface.h"
 
 namespace couture::drivers {
 
@@ -22,27 +20,12 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// "name=value" with a number.
-std::pair<std::string, double> read_setting(const std::string& setting, const char* option) {
-    const std::size_t sign = setting.find('=');
-    double value = 0.0;
-    if (sign != std::string::npos) {
-        const char* first = setting.data() + sign + 1;
-        const char* end = setting.data() + setting.size();
-        const auto [stop, error] = std::from_chars(first, end, value);
-        if (error == std::errc() && stop == end && first != end) {
-            return {setting.substr(0, sign), value};
-        }
-    }
-    throw InputError("mesh: {} '{}' is no setting; write NAME=NUMBER", option, setting);
-}
-
 meshing::CriterionWeights read_weights(const std::vector<std::string>& settings,
                                        const char* option) {
     meshing::CriterionWeights weights;
     if (!settings.empty()) weights.length = 0.0;
     for (const std::string& setting : settings) {
-        const auto [name, value] = read_setting(setting, option);
+        const auto [name, value] = read_setting("mesh", setting, option);
         if (name == "length") {
             weights.length = value;
         } else if (name == "symmetry") {
@@ -58,12 +41,6 @@ meshing::CriterionWeights read_weights(const std::vector<std::string>& settings,
         }
     }
     return weights;
-}
-
-bool is_part(const std::string& name) {
-    const auto& parts = meshing::part_surfaces();
-    return std::any_of(parts.begin(), parts.end(),
-                       [&](const meshing::PartInfo& part) { return part.name == name; });
 }
 
 // "x,y,z".
@@ -95,7 +72,8 @@ io::MeshDeck deck_of(const MeshOptions& options) {
         const bool has_more =
             options.edge_length != 0.0 || options.feature_angle || !options.cycle_weights.empty() ||
             !options.merge_weights.empty() || !options.open.empty() || !options.open_at.empty() ||
-            !options.open_facing.empty() || options.most_boundaries || !options.like.empty();
+            !options.open_facing.empty() || options.most_boundaries || !options.like.empty() ||
+            options.fix || options.fill_holes || options.shell;
         if (has_more) {
             throw InputError(
                 "mesh: with a deck only --stage, --set, --out and --png are options; write the "
@@ -105,7 +83,13 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     }
     io::MeshDeck deck;
     deck.title = std::filesystem::path(options.surface).stem().string();
-    if (std::filesystem::exists(options.surface) || !is_part(options.surface)) {
+    if (is_part_input(options.surface)) {
+        deck.part = options.surface;
+        deck.edge_length = options.edge_length;
+        for (const std::string& setting : options.overrides) {
+            deck.parameters.insert(read_setting("mesh", setting, "--set"));
+        }
+    } else {
         if (!options.overrides.empty() || options.edge_length != 0.0) {
             throw InputError(
                 "mesh: --set and --edge-length are for parts; '{}' is a file, which is taken as "
@@ -113,13 +97,10 @@ io::MeshDeck deck_of(const MeshOptions& options) {
                 options.surface);
         }
         deck.surface = options.surface;
-    } else {
-        deck.part = options.surface;
-        deck.edge_length = options.edge_length;
-        for (const std::string& setting : options.overrides) {
-            deck.parameters.insert(read_setting(setting, "--set"));
-        }
     }
+    deck.fix = options.fix;
+    deck.fill_holes = options.fill_holes;
+    deck.shell = options.shell;
     if (!options.stage.empty()) deck.stage = options.stage;
     if (options.feature_angle) deck.features.angle = *options.feature_angle * degree;
     for (const std::string& name : options.open) {
@@ -223,13 +204,13 @@ void print_text(const MeshStages& stages, MeshStage last) {
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     const io::MeshDeck deck = deck_of(options);
     const MeshStage last = read_mesh_stage(deck.stage);
-    const Timer timer;
-    const MeshStages stages = run_mesh_stages(deck);
-    const double seconds = timer.seconds();
 
     const std::string name = std::filesystem::path(options.surface).stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
+    const Timer timer;
+    const MeshStages stages = run_mesh_stages(deck, folder / (name + "_problems.vtp"));
+    const double seconds = timer.seconds();
     const std::string provenance =
         fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
                     deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));

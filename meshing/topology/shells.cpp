@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 
@@ -177,6 +178,32 @@ double winding_number(const TriangleSoup& soup, const Vector3& point) {
     std::vector<int> triangles(soup.triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = static_cast<int>(i);
     return winding_number(soup, triangles, point);
+}
+
+std::vector<NestedShell> nest_shells(const TriangleSoup& soup) {
+    check_closed(soup);
+    const auto candidates = make_candidates(soup);
+    std::vector<NestedShell> nested;
+    for (const auto& candidate : candidates) {
+        nested.push_back({.shell = candidate.shell, .low = candidate.low, .high = candidate.high});
+    }
+    // A shell lies in larger ones only.
+    std::vector<int> order(candidates.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+        return candidates[i].shell.volume > candidates[j].shell.volume;
+    });
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        NestedShell& shell = nested[order[k]];
+        for (std::size_t l = 0; l < k; ++l) {
+            if (!is_inside(soup, candidates[order[k]], candidates[order[l]])) continue;
+            ++shell.depth;
+            shell.parent = order[l];
+        }
+        shell.shell.is_cavity = shell.depth % 2 == 1;
+        if (shell.shell.is_cavity) shell.shell.is_reversed = !shell.shell.is_reversed;
+    }
+    return nested;
 }
 
 Solid make_solid(const TriangleSoup& soup) {

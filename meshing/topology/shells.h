@@ -46,6 +46,27 @@ struct Solid {
 /// Source: [Maquart19] section 6.1.3, Eq. (6.15): b1 = b0 + b2 - chi(boundary) / 2
 [[nodiscard]] Solid make_solid(const TriangleSoup& soup);
 
+/// A closed component among others.
+struct NestedShell {
+    /// `is_cavity` and `is_reversed` as if the shells around it bounded a solid with cavities,
+    /// solids in these, and so on.
+    Shell shell;
+    /// How many shells are around it: 0 an outer one, 1 a cavity, 2 a solid in a cavity.
+    int depth = 0;
+    /// Position of the closest one around it in the list, or -1.
+    int parent = -1;
+    /// Corners of its bounding box.
+    Vector3 low = Vector3::Zero();
+    Vector3 high = Vector3::Zero();
+};
+
+/// All closed components with what lies in what, in the order of their smallest triangle.
+/// `make_solid` takes those with one outer shell and nothing deeper than cavities.
+///
+/// @throws TopologyError, GeometryError  as `make_solid` for a component that is no shell, and for
+///                                       shells that cross
+[[nodiscard]] std::vector<NestedShell> nest_shells(const TriangleSoup& soup);
+
 /// How often closed triangles wind around a point: 1 inside a surface that is oriented outwards, 0
 /// outside, in between on the surface itself (one half inside a flat face).
 ///

@@ -1,14 +1,18 @@
 #include "io/surface_reader.h"
 
+#include <array>
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
+#include "io/surface_file.h"
 #include "tests/io/temporary_folder.h"
 
 using namespace couture;
@@ -200,15 +204,232 @@ TEST_CASE("read_surface: OFF", "[io]") {
 }
 
 TEST_CASE("read_surface: files that can't be read", "[io]") {
-    for (const char* name : {"a.stl", "a.obj", "a.off"}) {
+    for (const char* name : {"a.stl", "a.obj", "a.off", "a.ply", "a.vtp"}) {
         CHECK(message(name, "") == std::string(name) + ": the file is empty; expected triangles");
     }
     CHECK(message("a.step", "x") ==
-          "a.step: the ending '.step' is not that of a surface; expected '.stl', '.obj' or '.off'");
+          "a.step: the ending '.step' is not that of a surface; expected '.stl', '.obj', "
+          "'.off', '.ply' or '.vtp'");
     CHECK(message("a", "x") ==
-          "a: the ending '' is not that of a surface; expected '.stl', '.obj' or '.off'");
+          "a: the ending '' is not that of a surface; expected '.stl', '.obj', "
+          "'.off', '.ply' or '.vtp'");
     const TemporaryFolder folder;
     const std::string missing = (folder / "a.stl").string();
     CHECK_THROWS_WITH(read_surface(missing),
                       missing + ": can't be read: No such file or directory");
+}
+
+namespace {
+
+const std::string ply_header =
+    "element vertex 4\ncomment by hand\nproperty float x\nproperty uchar red\nproperty double y\n"
+    "property float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty short "
+    "label\nelement edge 1\nproperty int a\nend_header\n";
+const std::string ascii_ply = "ply\nformat ascii 1.0\n" + ply_header +
+                              "0 9 0 0\n1 9 0 0\n1 9 1 0\n0 9 1 0\n3 0 1 2 7\n3 0 2 3 7\n5\n";
+
+template <typename T>
+void append(std::string& text, T value, bool is_big) {
+    std::string bytes(sizeof(T), ' ');
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    text += is_big ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
+}
+
+std::string binary_ply(bool is_big) {
+    std::string text = "ply\nformat binary_" + std::string(is_big ? "big" : "little") +
+                       "_endian 1.0\n" + ply_header;
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+        append(text, static_cast<float>(x), is_big);
+        text += '\x09';
+        append(text, static_cast<double>(y), is_big);
+        append(text, 0.0F, is_big);
+    }
+    for (const std::array<std::int32_t, 3>& corners : {std::array{0, 1, 2}, {0, 2, 3}}) {
+        text += '\x03';
+        for (const std::int32_t corner : corners) append(text, corner, is_big);
+        append(text, std::int16_t{7}, is_big);
+    }
+    append(text, std::int32_t{5}, is_big);
+    return text;
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+}
+
+/// The message of the text file above with one passage replaced.
+std::string ply_message(const std::string& from, const std::string& to) {
+    std::string text = ascii_ply;
+    replace(text, from, to);
+    return message("a.ply", text);
+}
+
+}  // namespace
+
+TEST_CASE("read_surface: PLY in text and binary", "[io]") {
+    check_square(read("a.ply", ascii_ply));
+    check_square(read("a.PLY", binary_ply(false)));
+    check_square(read("a.ply", binary_ply(true)));
+
+    CHECK(ply_message("ply\n", "plx\n") == "a.ply:1: found 'plx'; expected 'ply'");
+    CHECK(ply_message("ascii", "text") ==
+          "a.ply:2: found 'text'; expected 'ascii', 'binary_little_endian' or 'binary_big_endian'");
+    CHECK(ply_message("format ascii 1.0\n", "") ==
+          "a.ply:12: the header ends without 'format'; expected it on line 2");
+    CHECK(ply_message("vertex 4", "vertex 2000000000") ==
+          "a.ply:3: found 2000000000 elements 'vertex'; a file of 308 bytes holds 308 at most");
+    CHECK(ply_message("float x", "real x") ==
+          "a.ply:5: found 'real'; expected a type: char, uchar, short, ushort, int, uint, float or "
+          "double");
+    CHECK(ply_message("list uchar", "list float") ==
+          "a.ply:10: the length of a list is a whole number; expected such a type");
+    CHECK(ply_message("property double y", "property double w") ==
+          "a.ply: the header lists no x, y and z of element 'vertex'");
+    CHECK(ply_message("vertex_indices", "corners") ==
+          "a.ply: the header lists no list 'vertex_indices' of element 'face'");
+    CHECK(ply_message("element face", "element facet") ==
+          "a.ply: the header lists no element 'face'; a surface has 'vertex' and 'face'");
+    CHECK(ply_message("1 9 1 0", "1 9 nan 0") ==
+          "a.ply:16: found 'nan' as y of point 2; expected a finite number");
+    CHECK(ply_message("1 9 1 0", "1 9 x 0") == "a.ply:16: found 'x'; expected a number: y");
+    CHECK(ply_message("3 0 2 3", "3 0 2 4") ==
+          "a.ply:19: found '4' in face 1; expected the number of a point, from 0 to 3");
+    CHECK(ply_message("3 0 2 3", "-3 0 2 3") ==
+          "a.ply:19: found -3; expected the length of the list 'vertex_indices', at most 299 in "
+          "this file");
+    CHECK(ply_message("7\n5\n", "7\n") == "a.ply:19: the file ends here; expected a");
+    CHECK(ply_message("7\n5\n", "7\n5 5\n") ==
+          "a.ply:20: found '5' after the last of the elements; expected nothing more");
+    CHECK(message("a.ply", "ply\nformat ascii 1.0\n") ==
+          "a.ply:3: the file ends here; expected 'end_header'");
+    const std::string whole = binary_ply(false);
+    CHECK(message("a.ply", whole.substr(0, whole.size() - 1)) ==
+          "a.ply: byte " + std::to_string(whole.size() - 4) + ": the file ends here; expected a");
+    CHECK(message("a.ply", whole + "xy") ==
+          "a.ply: byte " + std::to_string(whole.size()) +
+              ": 2 bytes follow the last of the elements; expected nothing more");
+}
+
+TEST_CASE("read_surface: VTP", "[io]") {
+    const auto vtp = [](const std::string& counts, const std::string& cells) {
+        return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+               "byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" " +
+               counts +
+               "><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+               "0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points>" +
+               cells + "</Piece></PolyData></VTKFile>\n";
+    };
+    const auto cells = [](const std::string& name, const std::string& corners,
+                          const std::string& ends) {
+        return "<" + name + "><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" +
+               corners +
+               "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + ends +
+               "</DataArray></" + name + ">";
+    };
+    check_square(read("a.vtp", vtp("NumberOfPolys=\"1\"", cells("Polys", "0 1 2 3", "4"))));
+    check_square(
+        read("a.VTP", vtp("NumberOfPolys=\"2\" NumberOfLines=\"1\"",
+                          cells("Lines", "0 1", "2") + cells("Polys", "0 1 2 0 2 3", "3 6"))));
+    const TriangleSoup strip =
+        read("a.vtp", vtp("NumberOfStrips=\"1\"", cells("Strips", "0 1 3 2", "4")));
+    CHECK(strip.triangles == std::vector<std::array<int, 3>>{{0, 1, 3}, {1, 2, 3}});
+    CHECK(message("a.vtp", vtp("NumberOfPolys=\"1\"", cells("Polys", "0 1 2 4", "4"))) ==
+          "a.vtp: polygon 0 has point 4; expected from 0 to 3");
+    CHECK_THAT(message("a.vtp", vtp("NumberOfPolys=\"2000000000\"", "")),
+               Catch::Contains("found NumberOfPolys 2000000000; a file of "));
+    CHECK(message("a.vtp", "a letter") ==
+          "a.vtp: found no 'VTKFile'; expected a VTK XML file of PolyData");
+    const std::string whole = vtp("NumberOfPolys=\"1\"", cells("Polys", "0 1 2 3", "4"));
+    CHECK_THAT(message("a.vtp", whole.substr(0, whole.size() / 2)),
+               Catch::Contains("VTK can't read it: "));
+}
+
+TEST_CASE("read_surface_file: what was done is counted", "[io]") {
+    const TemporaryFolder folder;
+    write_text(folder / "a.off", "OFF\n7 4 0\n" + off_points +
+                                     "2 0.5 0\n0 0 0\n9 9 9\n4 0 1 2 3\n5 1 4 2 2 1\n"
+                                     "3 0 5 1\n2 0 1\n");
+    const SurfaceFile file = read_surface_file(folder / "a.off");
+    CHECK(file.format == "OFF");
+    CHECK(file.n_points_read == 7);
+    CHECK(file.n_polygons_read == 4);
+    CHECK(file.n_merged == 1);
+    CHECK(file.n_split == 1);
+    CHECK(file.n_degenerate == 2);
+    CHECK(file.n_unused == 1);
+    CHECK(file.soup.triangles.size() == 3);
+    CHECK(is_surface_file("x.StL"));
+    CHECK_FALSE(is_surface_file("x.xml"));
+}
+
+TEST_CASE("read_surface: damaged files are read or refused, never worse", "[io]") {
+    const std::string name = GENERATE("a.ply", "b.ply", "a.vtp", "a.off", "a.obj");
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / name;
+    if (name == "b.ply") {
+        write_text(path, ascii_ply);
+    } else {
+        write_surface(path, read("a.ply", ascii_ply));
+    }
+    const std::string whole = read_text(path);
+    std::mt19937 random(11);
+    constexpr int n_trials = 60;
+    for (int i = 0; i < n_trials; ++i) {
+        std::string text = whole;
+        if (i % 3 == 0) text.resize(whole.size() * static_cast<std::size_t>(i) / n_trials);
+        for (int k = 0; k < i % 5 && !text.empty(); ++k) {
+            const std::size_t at = random() % text.size();
+            if (random() % 4 == 0) {
+                text.insert(at, std::to_string(random()));
+            } else {
+                text[at] = static_cast<char>(random() % 256);
+            }
+        }
+        write_text(path, text);
+        bool is_handled = true;
+        try {
+            static_cast<void>(read_surface(path));
+        } catch (const Error&) {
+            is_handled = true;
+        } catch (...) {
+            is_handled = false;
+        }
+        CAPTURE(i);
+        CHECK(is_handled);
+    }
+}
+
+TEST_CASE("write_surface: every format is read again as it was", "[io]") {
+    const std::string ending = GENERATE(".stl", ".obj", ".off", ".ply", ".vtp", ".PLY");
+    const TriangleSoup soup{
+        .points = {{0.1, -1e-7 / 3.0, 1e6 / 7.0}, {1.0 / 3.0, 0, 0}, {0, 1, 0}, {0, 0, 1e20}},
+        .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    const TemporaryFolder folder;
+    CHECK(write_surface(folder / ("sub/a" + ending), soup, "from a test").empty());
+    const TriangleSoup again = read_surface(folder / ("sub/a" + ending));
+    if (ending == ".stl") {
+        // The order of first use.
+        REQUIRE(again.points.size() == 4);
+        CHECK(again.points[0] == Vector3(soup.points[0].cast<float>().cast<double>()));
+        CHECK(again.triangles ==
+              std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}, {2, 1, 3}, {1, 0, 3}});
+    } else {
+        CHECK(again.points == soup.points);
+        CHECK(again.triangles == soup.triangles);
+    }
+}
+
+TEST_CASE("write_surface: what a format can't keep", "[io]") {
+    const TemporaryFolder folder;
+    TriangleSoup soup{.points = {{1, 0, 0}, {1.0 + 1e-12, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                      .triangles = {{0, 1, 2}, {1, 2, 3}}};
+    const auto warnings = write_surface(folder / "a.stl", soup);
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Catch::Contains("a.stl: 1 points become equal to others"));
+    soup.points[0].x() = 1e300;
+    CHECK_THROWS_WITH(write_surface(folder / "a.stl", soup),
+                      Catch::Contains("beyond the single precision of STL"));
+    CHECK_THROWS_WITH(write_surface(folder / "a.step", soup),
+                      Catch::Contains("the ending '.step' is not that of a surface"));
 }

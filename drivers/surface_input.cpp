@@ -1,0 +1,192 @@
+#include "drivers/surface_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "io/surface_writer.h"
+#include "meshing/parts/part_surface.h"
+
+namespace couture::drivers {
+
+namespace {
+
+using meshing::FlawKind;
+
+bool is_part(const std::string& name) {
+    const auto& parts = meshing::part_surfaces();
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](const meshing::PartInfo& part) { return part.name == name; });
+}
+
+void read_or_build(const std::string& command, const SurfaceInputOptions& options,
+                   io::DescribedSurface& surface) {
+    if (!is_part_input(options.surface)) {
+        if (!options.overrides.empty() || options.edge_length != 0.0) {
+            throw InputError(
+                "{}: --set and --edge-length are for parts; '{}' is a file, which is taken as it "
+                "is",
+                command, options.surface);
+        }
+        surface.file = io::read_surface_file(options.surface);
+        return;
+    }
+    std::map<std::string, double> parameters = options.parameters;
+    for (const std::string& setting : options.overrides) {
+        parameters.insert(read_setting(command, setting, "--set"));
+    }
+    surface.part = meshing::make_part_surface(options.surface, parameters, options.edge_length);
+    io::SurfaceFile& file = surface.file;
+    file.soup = surface.part->soup;
+    file.format = "part";
+    file.n_points_read = static_cast<int>(file.soup.points.size());
+    file.n_polygons_read = static_cast<int>(file.soup.triangles.size());
+}
+
+/// What to do about a kind that is refused.
+std::string advice(FlawKind kind) {
+    switch (kind) {
+        case FlawKind::self_intersection:
+            return "such must be resolved where the surface was made";
+        case FlawKind::disjoint_shell:
+            return "choose one with --shell N, numbered from 0 as 'couture info' lists components";
+        case FlawKind::non_manifold_vertex:
+            return "--fix gives each part a vertex of its own";
+        case FlawKind::inconsistent_edge:
+            return "a surface that cannot be oriented (as a Moebius strip) bounds no solid";
+        case FlawKind::non_manifold_edge:
+            return "an edge has two triangles; remove inner walls and what stands out of the "
+                   "surface where it was made";
+        default:
+            return "a solid needs a closed surface around it";
+    }
+}
+
+constexpr std::array refused{FlawKind::non_manifold_edge,  FlawKind::non_manifold_vertex,
+                             FlawKind::inconsistent_edge,  FlawKind::disjoint_shell,
+                             FlawKind::duplicate_triangle, FlawKind::self_intersection,
+                             FlawKind::too_few_triangles,  FlawKind::no_volume};
+
+std::string times(int n) { return n == 1 ? "" : fmt::format(" ({} such)", n); }
+
+}  // namespace
+
+std::pair<std::string, double> read_setting(const std::string& command, const std::string& setting,
+                                            const char* option) {
+    const std::size_t sign = setting.find('=');
+    double value = 0.0;
+    if (sign != std::string::npos) {
+        const char* first = setting.data() + sign + 1;
+        const char* end = setting.data() + setting.size();
+        const auto [stop, error] = std::from_chars(first, end, value);
+        if (error == std::errc() && stop == end && first != end) {
+            return {setting.substr(0, sign), value};
+        }
+    }
+    throw InputError("{}: {} '{}' is no setting; write NAME=NUMBER", command, option, setting);
+}
+
+bool is_part_input(const std::string& name) {
+    return is_part(name) && !std::filesystem::exists(name);
+}
+
+bool is_surface_input(const std::string& name) {
+    return io::is_surface_file(name) || is_part_input(name);
+}
+
+io::DescribedSurface load_surface(const std::string& command, const SurfaceInputOptions& options) {
+    io::DescribedSurface surface;
+    surface.name = options.surface;
+    read_or_build(command, options, surface);
+    meshing::RepairedSurface repaired = meshing::repair_surface(surface.file.soup);
+    surface.soup = std::move(repaired.soup);
+    surface.repair = std::move(repaired.report);
+    std::vector<int> turned = std::move(repaired.turned);
+    if (options.fix || options.fill_holes) {
+        meshing::FixOptions fix{.fills_holes = options.fill_holes};
+        if (!options.fix) fix.weld_distance = fix.flatness = 0.0;
+        meshing::FixedSurface fixed = meshing::fix_surface(surface.soup, fix);
+        surface.soup = std::move(fixed.soup);
+        surface.fix = std::move(fixed.report);
+        // Triangles have other numbers now.
+        turned.clear();
+    }
+    if (options.shell) {
+        surface.soup = meshing::select_shell(surface.soup, *options.shell);
+        turned.clear();
+    }
+    surface.n_shells_turned = meshing::orient_outwards(surface.soup, turned);
+    surface.check = meshing::check_solid(surface.soup);
+    return surface;
+}
+
+meshing::SurfaceMesh make_checked_mesh(const std::string& command,
+                                       const io::DescribedSurface& surface,
+                                       const std::filesystem::path& problems_file) {
+    const meshing::SurfaceCheck& check = surface.check;
+    if (surface.repair.n_turned > 0) {
+        log::warn(
+            fmt::format("{}: {} triangles ran against their neighbours; they are turned round",
+                        command, surface.repair.n_turned));
+    }
+    if (surface.n_shells_turned > 0) {
+        log::warn(fmt::format("{}: {} of the surface {} inside out; {} turned round", command,
+                              surface.n_shells_turned == 1
+                                  ? "a shell"
+                                  : fmt::format("{} shells", surface.n_shells_turned),
+                              surface.n_shells_turned == 1 ? "is" : "are",
+                              surface.n_shells_turned == 1 ? "it is" : "they are"));
+    }
+    std::string text;
+    FlawKind first = FlawKind::none;
+    for (const FlawKind kind : refused) {
+        const meshing::SurfaceFlaw* flaw = check.first(kind);
+        if (flaw == nullptr) continue;
+        if (first == FlawKind::none) first = kind;
+        text += fmt::format("\n  {}{} at {}; {}", to_string(kind), times(check.count(kind)),
+                            flaw->text, advice(kind));
+    }
+    if (first != FlawKind::none) {
+        write_problems(problems_file, surface);
+        const std::string message =
+            fmt::format("{}: {} can't be meshed:{}\n  all places are marked in {}", command,
+                        surface.name, text, problems_file.string());
+        if (first == FlawKind::self_intersection) throw GeometryError("{}", message);
+        throw TopologyError("{}", message);
+    }
+    if (const meshing::SurfaceFlaw* flaw = check.first(FlawKind::flat_triangle)) {
+        log::warn(fmt::format("{}: flat triangle{} at {}; --fix removes such", command,
+                              times(check.count(FlawKind::flat_triangle)), flaw->text));
+    }
+    for (const meshing::SurfaceFlaw& flaw : check.flaws) {
+        if (flaw.kind != FlawKind::open_boundary) continue;
+        log::info(fmt::format("{}: the surface is open at {}", command, flaw.text));
+    }
+    return meshing::make_surface_mesh(surface.soup);
+}
+
+void write_problems(const std::filesystem::path& path, const io::DescribedSurface& surface) {
+    const auto flaws = meshing::flaw_of_triangle(surface.check, surface.soup.triangles.size());
+    MatrixX values(static_cast<Eigen::Index>(flaws.size()), 1);
+    for (std::size_t t = 0; t < flaws.size(); ++t) {
+        values(static_cast<Eigen::Index>(t), 0) = flaws[t];
+    }
+    std::vector<io::SurfaceLine> lines;
+    for (std::size_t i = 0; i < surface.check.flaws.size(); ++i) {
+        const meshing::SurfaceFlaw& flaw = surface.check.flaws[i];
+        if (flaw.line.empty()) continue;
+        lines.push_back({.points = flaw.line,
+                         .is_closed = flaw.is_closed,
+                         .kind = static_cast<int>(flaw.kind),
+                         .number = static_cast<int>(i)});
+    }
+    const std::vector<io::SurfaceArray> on_triangles{{"problem", values}};
+    io::write_vtp(path, surface.soup, {}, on_triangles, lines,
+                  fmt::format("couture {} problems of {}", COUTURE_VERSION, surface.name));
+}
+
+}  // namespace couture::drivers
