@@ -276,9 +276,9 @@ TEST_CASE("read_surface: PLY in text and binary", "[io]") {
     CHECK(ply_message("ascii", "text") ==
           "a.ply:2: found 'text'; expected 'ascii', 'binary_little_endian' or 'binary_big_endian'");
     CHECK(ply_message("format ascii 1.0\n", "") ==
-          "a.ply:12: the header ends without 'format'; expected it on line 2");
+          "a.ply:13: the header ends without 'format'; expected it on line 2");
     CHECK(ply_message("vertex 4", "vertex 2000000000") ==
-          "a.ply:3: found 2000000000 elements 'vertex'; a file of 308 bytes holds 308 at most");
+          "a.ply:3: found 2000000000 elements 'vertex'; a file of 304 bytes holds 304 at most");
     CHECK(ply_message("float x", "real x") ==
           "a.ply:5: found 'real'; expected a type: char, uchar, short, ushort, int, uint, float or "
           "double");
@@ -291,16 +291,16 @@ TEST_CASE("read_surface: PLY in text and binary", "[io]") {
     CHECK(ply_message("element face", "element facet") ==
           "a.ply: the header lists no element 'face'; a surface has 'vertex' and 'face'");
     CHECK(ply_message("1 9 1 0", "1 9 nan 0") ==
-          "a.ply:16: found 'nan' as y of point 2; expected a finite number");
-    CHECK(ply_message("1 9 1 0", "1 9 x 0") == "a.ply:16: found 'x'; expected a number: y");
+          "a.ply:17: found 'nan' as y of point 2; expected a finite number");
+    CHECK(ply_message("1 9 1 0", "1 9 x 0") == "a.ply:17: found 'x'; expected a number: y");
     CHECK(ply_message("3 0 2 3", "3 0 2 4") ==
-          "a.ply:19: found '4' in face 1; expected the number of a point, from 0 to 3");
+          "a.ply:20: found '4' in face 1; expected the number of a point, from 0 to 3");
     CHECK(ply_message("3 0 2 3", "-3 0 2 3") ==
-          "a.ply:19: found -3; expected the length of the list 'vertex_indices', at most 299 in "
+          "a.ply:20: found -3; expected the length of the list 'vertex_indices', at most 296 in "
           "this file");
-    CHECK(ply_message("7\n5\n", "7\n") == "a.ply:19: the file ends here; expected a");
+    CHECK(ply_message("7\n5\n", "7\n") == "a.ply:21: the file ends here; expected a");
     CHECK(ply_message("7\n5\n", "7\n5 5\n") ==
-          "a.ply:20: found '5' after the last of the elements; expected nothing more");
+          "a.ply:21: found '5' after the last of the elements; expected nothing more");
     CHECK(message("a.ply", "ply\nformat ascii 1.0\n") ==
           "a.ply:3: the file ends here; expected 'end_header'");
     const std::string whole = binary_ply(false);
