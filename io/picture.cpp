@@ -35,6 +35,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
@@ -102,6 +103,17 @@ void check_input(const Scene& scene) {
             scene.view_direction[0], scene.view_direction[1], scene.view_direction[2], scene.up[0],
             scene.up[1], scene.up[2]);
     }
+    if (scene.frame && !(scene.frame->center.allFinite() && scene.frame->height > 0.0 &&
+                         std::isfinite(scene.frame->height))) {
+        throw InputError(
+            "render_png: the frame has its centre at ({}, {}) and is {} high; the centre must be "
+            "finite and the height positive",
+            scene.frame->center[0], scene.frame->center[1], scene.frame->height);
+    }
+    if (scene.text_scale && !(*scene.text_scale > 0.0 && *scene.text_scale < 100.0)) {
+        throw InputError("render_png: text_scale = {}; must be positive and below 100",
+                         *scene.text_scale);
+    }
     constexpr int largest = 8192;
     if (std::min(scene.width, scene.height) < 16 || std::max(scene.width, scene.height) > largest) {
         throw InputError("render_png: size {} x {}; each must be from 16 to {} pixels", scene.width,
@@ -134,15 +146,6 @@ Range value_range(const Scene& scene) {
     const double size = std::max(std::abs(range[0]), std::abs(range[1]));
     const double middle = 0.5 * (range[0] + range[1]);
     return range[1] - range[0] > uniform * size ? range : Range{middle, middle};
-}
-
-/// The camera's axes: right, up, towards the viewer.
-Matrix<3> camera_axes(const Scene& scene) {
-    Matrix<3> axes;
-    axes.col(2) = -scene.view_direction.normalized();
-    axes.col(0) = scene.up.cross(axes.col(2)).normalized();
-    axes.col(1) = axes.col(2).cross(axes.col(0));
-    return axes;
 }
 
 /// Lower and upper corner of all pieces in the camera's axes: 3 x 2.
@@ -270,8 +273,14 @@ void add_label(vtkRenderer& renderer, const Label& label, double size) {
     actor->GetPositionCoordinate()->SetCoordinateSystemToWorld();
     actor->GetPositionCoordinate()->SetValue(label.position[0], label.position[1],
                                              label.position[2]);
-    actor->GetTextProperty()->SetJustificationToCentered();
-    actor->GetTextProperty()->SetVerticalJustificationToCentered();
+    vtkTextProperty& look = *actor->GetTextProperty();
+    look.SetJustificationToCentered();
+    look.SetVerticalJustificationToCentered();
+    look.SetOrientation(label.angle * 180.0 / std::numbers::pi);
+    if (label.has_background) {
+        look.SetBackgroundColor(1.0, 1.0, 1.0);
+        look.SetBackgroundOpacity(1.0);
+    }
     renderer.AddActor2D(actor);
 }
 
@@ -429,9 +438,13 @@ void add_pieces(vtkRenderWindow& window, const Scene& scene, const Range& range,
     const Vector3 extent = box.col(1) - box.col(0);
     const double aspect = visible_width * scene.width / (visible_height * scene.height);
     const double smallest = std::max(1e-6 * extent.norm(), std::numeric_limits<double>::min());
-    const double half = 0.5 * margin * std::max({extent[1], extent[0] / aspect, smallest});
-    aim(*renderer, look, look * (0.5 * (box.col(0) + box.col(1))), half,
-        std::max(extent[2], smallest));
+    Vector3 center = 0.5 * (box.col(0) + box.col(1));
+    double half = 0.5 * margin * std::max({extent[1], extent[0] / aspect, smallest});
+    if (scene.frame) {
+        center.head<2>() = scene.frame->center;
+        half = 0.5 * scene.frame->height;
+    }
+    aim(*renderer, look, look * center, half, std::max(extent[2], smallest));
     window.AddRenderer(renderer);
 }
 
@@ -490,6 +503,58 @@ void write_png(const std::filesystem::path& path, vtkImageData& image) {
                             vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
         }
     });
+}
+
+/// As large as the scene asks for; there must be a display.
+vtkSmartPointer<vtkImageData> draw(const Scene& scene) {
+    vtkNew<vtkRenderWindow> window;
+    window->SetOffScreenRendering(1);
+    window->SetMultiSamples(0);
+    window->SetAlphaBitPlanes(1);
+    window->SetNumberOfLayers(3);
+    window->SetSize(oversampling * scene.width, oversampling * scene.height);
+    const double scale = oversampling * scene.text_scale.value_or(
+                                            std::min(scene.width / 1200.0, scene.height / 900.0));
+    const Range range = value_range(scene);
+    const Matrix<3> look = view_axes(scene);
+    add_background(*window, scene, range, scale);
+    add_pieces(*window, scene, range, look, scale);
+    if (scene.show_axes) {
+        add_axes(*window, look, scale);
+    }
+    window->Render();
+    vtkNew<vtkWindowToImageFilter> picture;
+    picture->SetInput(window);
+    picture->SetInputBufferTypeToRGB();
+    picture->ReadFrontBufferOff();
+    picture->ShouldRerenderOff();
+    picture->Update();
+    return shrink(*picture->GetOutput());
+}
+
+int row_width(const std::vector<Scene>& row) {
+    int width = 0;
+    for (const Scene& scene : row) {
+        width += scene.width;
+    }
+    return width;
+}
+
+int row_height(const std::vector<Scene>& row) {
+    int height = 0;
+    for (const Scene& scene : row) {
+        height = std::max(height, scene.height);
+    }
+    return height;
+}
+
+/// Copies a picture into a larger one with its lower left pixel at (left, bottom).
+void paste(vtkImageData& picture, vtkImageData& canvas, int left, int bottom) {
+    const int* size = picture.GetDimensions();
+    for (int y = 0; y < size[1]; ++y) {
+        std::memcpy(canvas.GetScalarPointer(left, bottom + y, 0), picture.GetScalarPointer(0, y, 0),
+                    static_cast<std::size_t>(3) * size[0]);
+    }
 }
 
 }  // namespace
@@ -559,31 +624,58 @@ std::optional<std::string> missing_for_pictures() {
     return std::nullopt;
 }
 
+Matrix<3> view_axes(const Scene& scene) {
+    Matrix<3> axes;
+    axes.col(2) = -scene.view_direction.normalized();
+    axes.col(0) = scene.up.cross(axes.col(2)).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    return axes;
+}
+
+Vector2 label_size(const std::string& text) {
+    // Most letters of the font are narrower.
+    constexpr double letter = 0.56;
+    return {letter * text_size * static_cast<double>(text.size()), 1.2 * text_size};
+}
+
 void render_png(const std::filesystem::path& path, const Scene& scene) {
     check_input(scene);
     const VirtualDisplay display;
-    vtkNew<vtkRenderWindow> window;
-    window->SetOffScreenRendering(1);
-    window->SetMultiSamples(0);
-    window->SetAlphaBitPlanes(1);
-    window->SetNumberOfLayers(3);
-    window->SetSize(oversampling * scene.width, oversampling * scene.height);
-    const double scale = oversampling * std::min(scene.width / 1200.0, scene.height / 900.0);
-    const Range range = value_range(scene);
-    const Matrix<3> look = camera_axes(scene);
-    add_background(*window, scene, range, scale);
-    add_pieces(*window, scene, range, look, scale);
-    if (scene.show_axes) {
-        add_axes(*window, look, scale);
+    write_png(path, *draw(scene));
+}
+
+void render_png(const std::filesystem::path& path, const std::vector<std::vector<Scene>>& rows) {
+    int width = 0;
+    int height = 0;
+    for (const std::vector<Scene>& row : rows) {
+        std::for_each(row.begin(), row.end(), check_input);
+        width = std::max(width, row_width(row));
+        height += row_height(row);
     }
-    window->Render();
-    vtkNew<vtkWindowToImageFilter> picture;
-    picture->SetInput(window);
-    picture->SetInputBufferTypeToRGB();
-    picture->ReadFrontBufferOff();
-    picture->ShouldRerenderOff();
-    picture->Update();
-    write_png(path, *shrink(*picture->GetOutput()));
+    if (width == 0) {
+        throw InputError("render_png: {} rows without a scene; nothing to show", rows.size());
+    }
+    const VirtualDisplay display;
+    // The display ends with its last window: this one outlives those of the scenes.
+    vtkNew<vtkRenderWindow> first;
+    first->SetOffScreenRendering(1);
+    first->SetSize(1, 1);
+    first->Render();
+    vtkNew<vtkImageData> canvas;
+    canvas->SetDimensions(width, height, 1);
+    canvas->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    std::memset(canvas->GetScalarPointer(), 255, static_cast<std::size_t>(3) * width * height);
+    int top = height;
+    for (const std::vector<Scene>& row : rows) {
+        int left = (width - row_width(row)) / 2;
+        for (const Scene& scene : row) {
+            const int bottom = top - (row_height(row) + scene.height) / 2;
+            paste(*draw(scene), *canvas, left, bottom);
+            left += scene.width;
+        }
+        top -= row_height(row);
+    }
+    write_png(path, *canvas);
 }
 
 }  // namespace couture::io

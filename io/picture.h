@@ -43,13 +43,24 @@ struct CurvePiece {
     double width = 2.2;
 };
 
-/// Text beside a point, always in front.
+/// Text centred at a point, always in front.
 struct Label {
     Vector3 position = Vector3::Zero();
     std::string text;
+    /// Radians, counter-clockwise in the picture.
+    double angle = 0.0;
+    /// Hides what is behind the text.
+    bool has_background = false;
 };
 
-/// What a picture shows and from where. The view is a parallel projection fitted to the pieces.
+/// The part of the picture's plane that is shown.
+struct ViewFrame {
+    /// Lengths from the origin to the right and upwards.
+    Vector2 center = Vector2::Zero();
+    double height = 1.0;
+};
+
+/// What a picture shows and from where, in parallel projection.
 struct Scene {
     std::vector<SurfacePiece> surfaces;
     std::vector<CurvePiece> curves;
@@ -62,11 +73,23 @@ struct Scene {
     /// Where the viewer looks, and what is up in the picture.
     Vector3 view_direction{-1.0, 1.5, -1.0};
     Vector3 up{0.0, 0.0, 1.0};
+    /// Nothing: fitted to the pieces.
+    std::optional<ViewFrame> frame;
     bool show_axes = true;
     Color background{1.0, 1.0, 1.0};
     int width = 1200;
     int height = 900;
+    /// Size of text, and width of lines, relative to those of 1200 x 900 pixels; nothing: as large
+    /// as the picture is.
+    std::optional<double> text_scale;
 };
+
+/// The picture's directions as columns: to the right, upwards, towards the viewer.
+[[nodiscard]] Matrix<3> view_axes(const Scene& scene);
+
+/// Pixels that a label takes across and up before it is turned, about; its letters are those of
+/// `text_scale` 1.
+[[nodiscard]] Vector2 label_size(const std::string& text);
 
 /// What is missing for pictures on this machine, with the way out; nothing if all is there.
 [[nodiscard]] std::optional<std::string> missing_for_pictures();
@@ -78,5 +101,11 @@ struct Scene {
 ///                     not finite), the view or the size is unusable or there is nothing to show
 /// @throws FileError   if the file can't be written or pictures can't be made here
 void render_png(const std::filesystem::path& path, const Scene& scene);
+
+/// Several scenes in one picture, in rows from the top, each as large as it asks for; centred in
+/// its row, and rows in the picture.
+///
+/// @throws  as `render_png`; InputError  if there is no scene
+void render_png(const std::filesystem::path& path, const std::vector<std::vector<Scene>>& rows);
 
 }  // namespace couture::io

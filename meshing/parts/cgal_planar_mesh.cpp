@@ -90,12 +90,32 @@ class RegionMesher {
         return {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
     }
 
+    /// For each point one before it that is a neighbour now; -1: there is none.
+    [[nodiscard]] std::vector<int> earlier_neighbours() const {
+        std::vector<int> neighbours(points_.size(), -1);
+        for (const Face face : triangulation_.finite_face_handles()) {
+            const std::array<int, 3> triangle = numbers(face);
+            const int first = *std::min_element(triangle.begin(), triangle.end());
+            for (const int i : triangle) {
+                if (i != first) {
+                    neighbours[i] = std::max(neighbours[i], first);
+                }
+            }
+        }
+        return neighbours;
+    }
+
     void rebuild() {
+        const std::vector<int> neighbours = earlier_neighbours();
         triangulation_.clear();
         std::vector<Triangulation::Vertex_handle> vertices;
         Face hint;
         for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
             const std::size_t n_before = triangulation_.number_of_vertices();
+            // Points move little: the search for a place starts beside it.
+            if (neighbours[i] >= 0) {
+                hint = vertices[neighbours[i]]->face();
+            }
             const auto vertex = triangulation_.insert(Point(points_[i].x(), points_[i].y()), hint);
             if (triangulation_.number_of_vertices() == n_before) {
                 throw GeometryError(

@@ -78,6 +78,59 @@ TEST_CASE("render_png: the picture has its size, shows something, and comes out 
     CHECK(image.GetScalarComponentAsDouble(319, 239, 0, 0) == 255.0);
 }
 
+TEST_CASE("render_png: several scenes in rows, each in its frame and centred", "[io]") {
+    if (!can_draw()) {
+        return;
+    }
+    // A black square [0, 1]^2 that fills the middle half of a frame of 2 x 2.
+    Scene scene;
+    SurfacePiece piece;
+    piece.vertices.resize(4, 3);
+    piece.vertices << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+    piece.triangles.resize(2, 3);
+    piece.triangles << 0, 1, 2, 0, 2, 3;
+    piece.color = {0.0, 0.0, 0.0};
+    scene.surfaces = {piece};
+    scene.view_direction = -Vector3::UnitZ();
+    scene.up = Vector3::UnitY();
+    scene.show_axes = false;
+    scene.frame = {{0.5, 0.5}, 2.0};
+    scene.width = 40;
+    scene.height = 40;
+    Scene small = scene;
+    small.width = 20;
+    small.height = 20;
+    const TemporaryFolder folder;
+    render_png(folder / "a.png", {{scene, small}, {small}});
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName((folder / "a.png").c_str());
+    reader->Update();
+    vtkImageData& image = *reader->GetOutput();
+    REQUIRE(image.GetDimensions()[0] == 60);
+    REQUIRE(image.GetDimensions()[1] == 60);
+    const auto is_dark = [&](int x, int y_from_top) {
+        return image.GetScalarComponentAsDouble(x, 59 - y_from_top, 0, 0) < 128.0;
+    };
+    // First row: [10, 30) x [10, 30); [45, 55) x [15, 25). Second: [25, 35) x [45, 55).
+    CHECK(is_dark(12, 12));
+    CHECK(is_dark(27, 27));
+    CHECK_FALSE(is_dark(7, 20));
+    CHECK_FALSE(is_dark(20, 33));
+    CHECK(is_dark(46, 16));
+    CHECK_FALSE(is_dark(50, 12));
+    CHECK(is_dark(26, 46));
+    CHECK(is_dark(33, 53));
+    CHECK_FALSE(is_dark(20, 50));
+}
+
+TEST_CASE("view_axes: to the right, upwards, towards the viewer", "[io]") {
+    Scene scene;
+    scene.view_direction = 2.0 * Vector3::UnitY();
+    Matrix<3> expected;
+    expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    CHECK(view_axes(scene) == expected);
+}
+
 TEST_CASE("render_png: wrong scenes are named and leave no file", "[io]") {
     const TemporaryFolder folder;
     Scene scene;
@@ -103,6 +156,18 @@ TEST_CASE("render_png: wrong scenes are named and leave no file", "[io]") {
     scene.width = 100;
     scene.curves.resize(1);
     CHECK_THROWS_WITH(render_png(folder / "a.png", scene), Contains("the points of curve 0"));
+    scene.curves.clear();
+    scene.frame = {{0.0, 1.0}, -2.0};
+    CHECK_THROWS_WITH(render_png(folder / "a.png", scene),
+                      "render_png: the frame has its centre at (0, 1) and is -2 high; the centre "
+                      "must be finite and the height positive");
+    scene.frame.reset();
+    scene.text_scale = 0.0;
+    CHECK_THROWS_WITH(render_png(folder / "a.png", scene),
+                      "render_png: text_scale = 0; must be positive and below 100");
+    CHECK_THROWS_WITH(render_png(folder / "a.png", {{scene}}), Contains("text_scale = 0"));
+    CHECK_THROWS_WITH(render_png(folder / "a.png", std::vector<std::vector<Scene>>(2)),
+                      "render_png: 2 rows without a scene; nothing to show");
     CHECK(folder.is_empty());
 }
 
