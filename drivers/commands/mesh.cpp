@@ -11,6 +11,7 @@
 #include "drivers/mesh_stages.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
+#include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/mesh_deck.h"
 
@@ -147,6 +148,14 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
                           {"length", curve.length},
                           {"vertices", curve.curve.vertices.size()}});
     }
+    auto& tunnels = object["tunnels"] = nlohmann::ordered_json::array();
+    for (const auto& tunnel : stages.pants->tunnels) {
+        double length = 0.0;
+        for (std::size_t k = 0; k < tunnel.size(); ++k) {
+            length += (tunnel[(k + 1) % tunnel.size()] - tunnel[k]).norm();
+        }
+        tunnels.push_back(length);
+    }
     auto& patches = object["patches"] = nlohmann::ordered_json::array();
     for (const auto& patch : stages.pants->patches) {
         auto sides = nlohmann::ordered_json::array();
@@ -228,6 +237,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
         object["program"] = "couture " COUTURE_VERSION;
         object["status"] = "done";
         object["seconds"] = seconds;
+        object["warnings"] = log::warnings();
         object["files"] = files;
         fmt::print("{}\n", object.dump(2));
     } else if (!common.quiet) {

@@ -1,4 +1,4 @@
-// Keys and types of a run's JSON are those of drivers/schema.md, both ways.
+// Keys and types of a run's JSON are those of its schema, both ways.
 #include <catch2/catch.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,8 +15,8 @@ namespace {
 
 /// Rows "| `key` | type | meaning |" of the first table: key -> type. A type that ends with
 /// "optional" may be absent.
-std::map<std::string, std::string> read_schema() {
-    std::istringstream text(io::read_text(COUTURE_SOURCE_DIR "/drivers/schema.md"));
+std::map<std::string, std::string> read_schema(const std::string& file) {
+    std::istringstream text(io::read_text(COUTURE_SOURCE_DIR "/drivers/" + file));
     std::map<std::string, std::string> schema;
     for (std::string line; std::getline(text, line);) {
         if (!line.starts_with("| `")) {
@@ -62,6 +62,23 @@ void collect(const Json& object, const std::string& prefix, std::map<std::string
     }
 }
 
+/// Every key is documented with its type, and every one that is not optional is there.
+void check_schema(const std::map<std::string, Json>& found, const std::string& file) {
+    const std::map<std::string, std::string> schema = read_schema(file);
+    REQUIRE(schema.size() > 20);
+    for (const auto& [key, value] : found) {
+        CAPTURE(key, value.dump());
+        REQUIRE(schema.count(key) == 1);
+        std::string type = schema.at(key);
+        type = type.substr(0, type.find(','));
+        CHECK(fits(value, type));
+    }
+    for (const auto& [key, type] : schema) {
+        CAPTURE(key);
+        CHECK((found.count(key) == 1 || type.ends_with("optional")));
+    }
+}
+
 }  // namespace
 
 TEST_CASE("schema: a run's JSON has the keys and types that are documented", "[drivers]") {
@@ -76,17 +93,16 @@ TEST_CASE("schema: a run's JSON has the keys and types that are documented", "[d
     std::map<std::string, Json> found;
     collect(Json::parse(result.output), "", found);
     CHECK(found.count("history[].remeshing.cause") == (deck.starts_with("solve_bar") ? 0 : 1));
-    const std::map<std::string, std::string> schema = read_schema();
-    REQUIRE(schema.size() > 20);
-    for (const auto& [key, value] : found) {
-        CAPTURE(key, value.dump());
-        REQUIRE(schema.count(key) == 1);
-        std::string type = schema.at(key);
-        type = type.substr(0, type.find(','));
-        CHECK(fits(value, type));
-    }
-    for (const auto& [key, type] : schema) {
-        CAPTURE(key);
-        CHECK((found.count(key) == 1 || type.ends_with("optional")));
-    }
+    check_schema(found, "schema.md");
+}
+
+TEST_CASE("schema: the JSON of mesh has the keys and types that are documented", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto result =
+        tests::run_couture("mesh plate_with_two_holes --edge-length 8 --json", folder.path());
+    REQUIRE(result.exit_code == 0);
+    std::map<std::string, Json> found;
+    collect(Json::parse(result.output), "", found);
+    CHECK(found.count("patches[].boundary[].left") == 1);
+    check_schema(found, "mesh_schema.md");
 }
