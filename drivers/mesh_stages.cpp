@@ -14,6 +14,7 @@
 #include "io/picture.h"
 #include "io/surface_writer.h"
 #include "meshing/surface/curvature.h"
+#include "meshing/surface/curvature_clusters.h"
 
 namespace couture::drivers {
 
@@ -99,6 +100,7 @@ std::vector<io::SurfaceArray> curvature_arrays(const SurfaceMesh& mesh) {
     MatrixX minimum(n, 1);
     MatrixX maximum(n, 1);
     MatrixX direction(n, 3);
+    const std::vector<int> cluster = find_curvature_clusters(mesh).cluster_of_vertex;
     for (Eigen::Index v = 0; v < n; ++v) {
         classes(v, 0) = static_cast<double>(classify_curvature(gaussian[v]));
         minimum(v, 0) = principal[v].minimum;
@@ -108,6 +110,7 @@ std::vector<io::SurfaceArray> curvature_arrays(const SurfaceMesh& mesh) {
     return {{"gaussian_curvature", column(gaussian)},
             {"geodesic_curvature", column(geodesic_curvature(mesh))},
             {"curvature_class", classes},
+            {"curvature_cluster", column(std::vector<double>(cluster.begin(), cluster.end()))},
             {"minimum_curvature", minimum},
             {"maximum_curvature", maximum},
             {"minimum_direction", direction}};

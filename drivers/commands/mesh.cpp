@@ -14,6 +14,7 @@
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/mesh_deck.h"
+#include "meshing/surface/curvature_clusters.h"
 
 namespace couture::drivers {
 
@@ -137,6 +138,17 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
                                        {"name", stages.surface_name},
                                        {"area", meshing::surface_area(stages.mesh)},
                                        {"volume", meshing::signed_volume(stages.mesh)}}}};
+    const auto clusters = meshing::find_curvature_clusters(stages.mesh);
+    auto& list = object["curvature"]["clusters"] = nlohmann::ordered_json::array();
+    for (const auto& cluster : clusters.clusters) {
+        const Vector3& x = cluster.center;
+        list.push_back({{"curvature", cluster.curvature},
+                        {"quarter_turns", cluster.quarter_turns},
+                        {"center", {x.x(), x.y(), x.z()}},
+                        {"vertices", cluster.vertices.size()}});
+    }
+    object["curvature"]["rest"] = clusters.rest;
+    object["curvature"]["missing_quarter_turns"] = clusters.missing_quarter_turns;
     object["features"] = {{"curves", stages.features.curves.size()},
                           {"corners", stages.features.corners.size()},
                           {"faces", stages.features.regions.size()}};

@@ -136,6 +136,15 @@ Vector3 face_normal(const SurfaceMesh& mesh, FaceHandle face) {
     return norm > 0.0 ? Vector3(area / norm) : Vector3::Zero();
 }
 
+Vector3 vertex_normal(const SurfaceMesh& mesh, VertexHandle vertex) {
+    Vector3 sum = Vector3::Zero();
+    for (const FaceHandle face : mesh.vf_range(vertex)) {
+        sum += face_area(mesh, face) * face_normal(mesh, face);
+    }
+    const double length = sum.norm();
+    return length > 0.0 ? Vector3(sum / length) : Vector3(Vector3::Zero());
+}
+
 double corner_angle(const SurfaceMesh& mesh, HalfedgeHandle halfedge) {
     const Vector3& corner = mesh.point(mesh.from_vertex_handle(halfedge));
     const Vector3 a = mesh.point(mesh.to_vertex_handle(halfedge)) - corner;

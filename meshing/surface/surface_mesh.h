@@ -80,6 +80,9 @@ using FaceHandle = OpenMesh::FaceHandle;
 [[nodiscard]] double face_area(const SurfaceMesh& mesh, FaceHandle face);
 /// Unit length; zero for a face without area.
 [[nodiscard]] Vector3 face_normal(const SurfaceMesh& mesh, FaceHandle face);
+/// Mean of the normals of the faces around a vertex by their areas, unit length; zero if they cancel
+/// out.
+[[nodiscard]] Vector3 vertex_normal(const SurfaceMesh& mesh, VertexHandle vertex);
 /// Angle of the face left of the halfedge at the vertex where it starts, in radians.
 [[nodiscard]] double corner_angle(const SurfaceMesh& mesh, HalfedgeHandle halfedge);
 [[nodiscard]] double surface_area(const SurfaceMesh& mesh);

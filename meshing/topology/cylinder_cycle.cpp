@@ -194,7 +194,8 @@ std::optional<CylinderCycle> find_cycle_through(Cutting& cylinder, const std::ve
         const AnnulusMap map = map_opened_annulus(opened, corners, 1.0, 1.0, false);
         order.assign(points.begin() + 1, points.end());
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-            return map.map.parameters[a].x() < map.map.parameters[b].x();
+            // What lies left of the opening is on the right of the rectangle.
+            return map.map.parameters[a].x() > map.map.parameters[b].x();
         });
     }
     cylinder.slice(gamma);

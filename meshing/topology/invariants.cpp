@@ -10,6 +10,7 @@
 
 #include "iga/core/error.h"
 #include "meshing/surface/curvature.h"
+#include "meshing/surface/soup_sides.h"
 
 namespace couture::meshing {
 
@@ -209,43 +210,19 @@ void check_gauss_bonnet(const SurfaceMesh& mesh) {
         defect, bound, where);
 }
 
-namespace {
-
-// An edge of a soup as a triangle runs along it.
-struct SoupSide {
-    int low, high;
-    int triangle;
-    bool is_forward;
-};
-
-}  // namespace
-
 Orientation orientation_of(const TriangleSoup& soup) {
-    std::vector<SoupSide> sides;
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const int from = soup.triangles[t][i];
-            const int to = soup.triangles[t][(i + 1) % 3];
-            sides.push_back(
-                {std::min(from, to), std::max(from, to), static_cast<int>(t), from < to});
-        }
-    }
-    std::sort(sides.begin(), sides.end(), [](const SoupSide& a, const SoupSide& b) {
-        return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
-    });
+    const std::vector<SoupSide> sides = sorted_sides(soup);
     // Neighbours across edges, and whether one of the two must be turned.
     struct Link {
         int to;
         bool is_turned;
     };
     std::vector<std::vector<Link>> links(soup.triangles.size());
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-        const SoupSide& a = sides[i];
-        const SoupSide& b = sides[i + 1];
-        if (a.low != b.low || a.high != b.high) continue;
-        if (i + 2 < sides.size() && sides[i + 2].low == a.low && sides[i + 2].high == a.high) {
-            return Orientation::impossible;
-        }
+    for (const auto& edge : edges_of(sides)) {
+        if (edge.size() > 2) return Orientation::impossible;
+        if (edge.size() < 2) continue;
+        const SoupSide& a = edge[0];
+        const SoupSide& b = edge[1];
         links[a.triangle].push_back({b.triangle, a.is_forward == b.is_forward});
         links[b.triangle].push_back({a.triangle, a.is_forward == b.is_forward});
     }

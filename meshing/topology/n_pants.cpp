@@ -137,6 +137,7 @@ Tube measure_tube(const SurfaceMesh& mesh, const PantsDecomposition& pants, int 
 }
 
 void merge_pants(SurfaceMesh& mesh, PantsDecomposition& pants, int most_boundaries, double ratio) {
+    std::vector<std::optional<Tube>> tubes(pants.curves.size());
     for (;;) {
         const auto beside = patches_beside(pants);
         std::optional<int> best;
@@ -147,14 +148,21 @@ void merge_pants(SurfaceMesh& mesh, PantsDecomposition& pants, int most_boundari
             const auto n_boundaries =
                 pants.patches[left].boundary.size() + pants.patches[right].boundary.size() - 2;
             if (static_cast<int>(n_boundaries) > most_boundaries) continue;
-            const Tube tube = measure_tube(mesh, pants, c);
-            const double relative = tube.length / tube.diameter;
+            if (!tubes[c]) tubes[c] = measure_tube(mesh, pants, c);
+            const double relative = tubes[c]->length / tubes[c]->diameter;
             // Rounding decides nothing.
             if (relative >= (best ? 1.0 - 1e-9 : 1.0) * least) continue;
             best = c;
             least = relative;
         }
         if (!best) return;
+        // Tubes that end in the new patch are others now.
+        for (std::size_t c = 0; c < tubes.size(); ++c) {
+            for (const int patch : beside[c]) {
+                if (patch == beside[*best][0] || patch == beside[*best][1]) tubes[c].reset();
+            }
+        }
+        tubes.erase(tubes.begin() + *best);
         remove_curve(mesh, pants, *best);
     }
 }

@@ -24,14 +24,6 @@ void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     }
 }
 
-Vector3 vertex_normal(const SurfaceMesh& mesh, VertexHandle vertex) {
-    Vector3 normal = Vector3::Zero();
-    for (const FaceHandle face : mesh.vf_range(vertex)) {
-        normal += face_area(mesh, face) * face_normal(mesh, face);
-    }
-    return normal;
-}
-
 GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     const std::size_t n = curve.vertices.size();
     const double step = curve_length(mesh, curve) / n_samples;

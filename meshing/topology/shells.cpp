@@ -1,4 +1,5 @@
 #include "meshing/topology/shells.h"
+#include "meshing/surface/soup_sides.h"
 
 #include <fmt/format.h>
 
@@ -54,41 +55,16 @@ struct Candidate {
 };
 
 void check_closed(const TriangleSoup& soup) {
-    struct Side {
-        int low, high;
-        int triangle;
-        bool is_forward;
-    };
-    std::vector<Side> sides;
-    sides.reserve(3 * soup.triangles.size());
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const int from = soup.triangles[t][i];
-            const int to = soup.triangles[t][(i + 1) % 3];
-            sides.push_back(
-                {std::min(from, to), std::max(from, to), static_cast<int>(t), from < to});
-        }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
-    });
-    for (std::size_t i = 0; i < sides.size();) {
-        std::size_t end = i;
-        while (end < sides.size() && sides[end].low == sides[i].low &&
-               sides[end].high == sides[i].high) {
-            ++end;
-        }
-        if (end - i != 2 || sides[i].is_forward == sides[i + 1].is_forward) {
-            const Vector3 middle = 0.5 * (soup.points[sides[i].low] + soup.points[sides[i].high]);
-            throw TopologyError(
-                "make_solid: the edge of vertices {} and {} at ({:.4g}, {:.4g}, {:.4g}) has {} "
-                "triangles{}; the boundary of a solid has two on each edge, in opposite "
-                "directions: "
-                "repair it, or close its holes",
-                sides[i].low, sides[i].high, middle.x(), middle.y(), middle.z(), end - i,
-                end - i == 2 ? " in the same direction" : "");
-        }
-        i = end;
+    const std::vector<SoupSide> sides = sorted_sides(soup);
+    for (const auto& edge : edges_of(sides)) {
+        if (edge.size() == 2 && edge[0].is_forward != edge[1].is_forward) continue;
+        const Vector3 middle = 0.5 * (soup.points[edge[0].low] + soup.points[edge[0].high]);
+        throw TopologyError(
+            "make_solid: the edge of vertices {} and {} at ({:.4g}, {:.4g}, {:.4g}) has {} "
+            "triangles{}; the boundary of a solid has two on each edge, in opposite directions: "
+            "repair it, or close its holes",
+            edge[0].low, edge[0].high, middle.x(), middle.y(), middle.z(), edge.size(),
+            edge.size() == 2 ? " in the same direction" : "");
     }
 }
 

@@ -62,14 +62,6 @@ class Tracer {
                             [&](EdgeHandle edge) { return mesh_.data(edge).curve >= 0; });
     }
 
-    [[nodiscard]] Vector3 normal_at(VertexHandle vertex) const {
-        Vector3 normal = Vector3::Zero();
-        for (const FaceHandle face : mesh_.vf_range(vertex)) {
-            normal += face_area(mesh_, face) * face_normal(mesh_, face);
-        }
-        return normal.normalized();
-    }
-
     // The free vertex nearest to each point; on the right side of the wall, if normals are given.
     // An invalid handle where there is none.
     [[nodiscard]] std::vector<VertexHandle> nearest(int region) const {
@@ -85,7 +77,8 @@ class Tracer {
             for (std::size_t k = 0; k < n; ++k) {
                 double distance = (x - guide_.points[k]).norm();
                 if (distance >= least[k]) continue;
-                if (!guide_.normals.empty() && normal_at(vertex).dot(guide_.normals[k]) < 0.0) {
+                if (!guide_.normals.empty() &&
+                    vertex_normal(mesh_, vertex).dot(guide_.normals[k]) < 0.0) {
                     distance += mesh_size_;
                     if (distance >= least[k]) continue;
                 }
