@@ -92,6 +92,12 @@ std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartS
 
 PreparedSurface prepare_surface(const io::MeshDeck& deck,
                                 const std::filesystem::path& problems_file) {
+    if (!deck.part.empty() && (deck.fix || deck.fill_holes || deck.shell)) {
+        throw InputError(
+            "mesh: --fix, --fill-holes and --shell (fix, fill_holes, shell of [meshing]) are for "
+            "files; the part '{}' has nothing to repair",
+            deck.part);
+    }
     const std::string source = deck.part.empty() ? deck.surface.string() : deck.part;
     const io::DescribedSurface described =
         load_surface("mesh", {.surface = source,

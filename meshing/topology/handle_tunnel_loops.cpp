@@ -551,7 +551,8 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
             // Narrow places are passed at vertices that no crossing loop has.
             std::vector<int> all(sliced.surface.n_vertices());
             std::iota(all.begin(), all.end(), 0);
-            pool.search(all, unlimited);
+            constexpr std::size_t n_last_sources = 500;
+            pool.search(sample(all, n_last_sources), unlimited);
             found = pool.shortest(kind, 1, chosen);
         }
         if (found.empty()) {
@@ -629,7 +630,8 @@ Loop make_given_loop(const AnnotatedSurface& annotated, const IntegerMatrix& pro
 }  // namespace
 
 HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
-                                           std::span<const std::vector<int>> cuts) {
+                                           std::span<const std::vector<int>> cuts,
+                                           bool needs_all_handles) {
     HandleTunnelLoops result;
     result.surface = surface;
     result.surface.split_chords();
@@ -662,10 +664,21 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
         if (!result.is_handle_cut.back()) given_classes.pop_back();
     }
     const int n_handles = basis.genus - static_cast<int>(given_classes.size());
+    if (needs_all_handles && n_handles > 0) {
+        throw TopologyError("handle and tunnel loops: the cuts leave {} of {} handles", n_handles,
+                            basis.genus);
+    }
 
     LoopPool pool(annotated, result.projector);
     std::vector<Loop> handles;
     std::vector<Loop> tunnels;
+    // Tunnels cross handles, those that are cut already among them.
+    const auto with_given = [&](std::vector<Loop> loops) {
+        for (std::size_t c = 0; c < given.size(); ++c) {
+            if (result.is_handle_cut[c]) loops.push_back(given[c]);
+        }
+        return loops;
+    };
     const auto n_of = [&](Kind kind) { return kind == Kind::handle ? n_handles : basis.genus; };
     const auto shortest = [&](Kind kind) {
         return pool.shortest(kind, n_of(kind),
@@ -708,7 +721,7 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
         }
     };
     if (is_short(handles, Kind::handle)) complete(handles, tunnels, Kind::handle);
-    if (is_short(tunnels, Kind::tunnel)) complete(tunnels, handles, Kind::tunnel);
+    if (is_short(tunnels, Kind::tunnel)) complete(tunnels, with_given(handles), Kind::tunnel);
 
     // Each kind crosses the other: shorter ones are looked for from there.
     constexpr int n_rounds = 3;
@@ -730,7 +743,7 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
     };
     for (int round = 0; round < n_rounds; ++round) {
         const bool has_better_handles = improve(handles, tunnels, Kind::handle);
-        const bool has_better_tunnels = improve(tunnels, handles, Kind::tunnel);
+        const bool has_better_tunnels = improve(tunnels, with_given(handles), Kind::tunnel);
         if (!has_better_handles && !has_better_tunnels) break;
     }
 
@@ -747,7 +760,7 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
         }
     }
     const std::vector<Loop> disjoint_tunnels =
-        make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, handles);
+        make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, with_given(handles));
     result.surface = std::move(annotated.surface);
     IntegerMatrix rows = given_classes;
     for (int i = 0; i < n_handles; ++i) {

@@ -48,13 +48,16 @@ struct HandleTunnelLoops {
 /// @param cuts     disjoint simple closed edge paths, by vertices in order, that bound inside the
 ///                 solid: handles keep off them, and are fewer by the number of independent classes
 ///                 that the cuts have
+/// @param needs_all_handles  whether the cuts must leave no handle
 /// @throws TopologyError  if the surface is not connected, or no solid's boundary (see
 ///                        linking_projector), or a knotted tube needs classes beyond what is
-///                        searched, or a cut does not bound inside
+///                        searched, or a cut does not bound inside,
+///                        or if the cuts must take off all handles and don't
 ///
 /// Source: [EricksonWhittlesey05]; [DeyLiSunCohenSteiner08]; [Maquart19] Sec. 2.1.2.4, 3.1.1.
 /// Differs: no Reeb graph; handles and tunnels are told apart by exact linking numbers.
 [[nodiscard]] HandleTunnelLoops find_handle_tunnel_loops(
-    const CutSurface& surface, std::span<const std::vector<int>> cuts = {});
+    const CutSurface& surface, std::span<const std::vector<int>> cuts = {},
+    bool needs_all_handles = false);
 
 }  // namespace couture::meshing

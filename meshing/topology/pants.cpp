@@ -168,7 +168,8 @@ class Decomposer {
                 cut.push_back(number[v.idx()]);
             }
         }
-        const HandleTunnelLoops loops = find_handle_tunnel_loops(whole, cuts);
+        const HandleTunnelLoops loops =
+            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
             if (loops.is_handle_cut[c]) {
                 result_.curves[n_boundaries + c].kind = PantsCurveKind::handle;
@@ -181,10 +182,6 @@ class Decomposer {
         }
         // A torus is a patch of its own.
         if (!are_cuts) return;
-        if (options_.only_given_loops && !loops.handles.empty()) {
-            throw TopologyError("pants: the given loops leave {} of {} handles uncut",
-                                loops.handles.size(), result_.genus);
-        }
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve curve;
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);

@@ -99,6 +99,7 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     refused("plate --set P1", "write NAME=NUMBER");
     refused("plate --set P9=3", "unknown parameter 'P9'");
     refused("plate --cycle weight=3", "has no term 'weight'");
+    refused("plate --fix", "has nothing to repair");
     refused("plate --open lid", "has no face 'lid'");
     refused("plate --open caps", "has no caps");
     refused("plate --open-at 1,2", "write X,Y,Z");
