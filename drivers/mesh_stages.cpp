@@ -199,13 +199,15 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         stages.features = detect_features(stages.mesh, deck.features);
     }
     if (last < MeshStage::loops) return stages;
+    options.only_handles = last == MeshStage::loops;
     if (deck.like.empty()) {
         stages.pants = decompose_into_pants(stages.mesh, options);
     } else {
         stages.pants = replay_pants(stages.mesh, io::read_pants_record(deck.like),
                                     surface.boundary_names, surface.landmarks);
     }
-    stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
+    if (last == MeshStage::pants)
+        stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
     return stages;
 }
 

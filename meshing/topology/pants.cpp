@@ -59,6 +59,10 @@ class Decomposer {
         const std::size_t n_boundaries = result_.curves.size();
         for (const GuideLoop& loop : options_.loops) add_loop(loop);
         cut_handles(invariants.euler_characteristic < 0, n_boundaries);
+        if (options_.only_handles) {
+            result_.patch_of_face = regions_between_curves(mesh_);
+            return std::move(result_);
+        }
         if (invariants.euler_characteristic < 0) {
             n_pants_ = -invariants.euler_characteristic;
             for (const auto& points : options_.cycles_through) cut_through(points);

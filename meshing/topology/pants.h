@@ -67,6 +67,8 @@ struct PantsOptions {
     /// Distance from such a curve at which a detour costs double, by the diagonal of the surface's
     /// box.
     double loop_width = 0.02;
+    /// Ends with the handles: there are no cycles and no patches.
+    bool only_handles = false;
     /// No cuts are added to the loops; what lies between them must have genus 0 and may have any
     /// number of boundary loops.
     bool only_given_loops = false;

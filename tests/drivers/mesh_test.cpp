@@ -35,6 +35,12 @@ TEST_CASE("mesh: stages, dimensions and weights can be chosen", "[drivers]") {
         run_couture("mesh plate --set P1=25 --edge-length 8 --stage surface --json", folder.path());
     REQUIRE(surface.exit_code == 0);
     CHECK(nlohmann::json::parse(surface.output)["files"].size() == 1);
+    const auto loops = run_couture("mesh plate_with_two_holes --stage loops --json", folder.path());
+    REQUIRE(loops.exit_code == 0);
+    const auto object = nlohmann::json::parse(loops.output);
+    CHECK(object["curves"].size() == 2);
+    CHECK(object["tunnels"].size() == 2);
+    CHECK(object["patches"].empty());
     const auto weights = run_couture(
         "mesh plate_with_two_holes --edge-length 8 --cycle length=1 symmetry=4 --merge length=1",
         folder.path());
