@@ -104,6 +104,11 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     deck.fill_holes = options.fill_holes;
     deck.shell = options.shell;
     if (!options.stage.empty()) deck.stage = options.stage;
+    if (options.feature_angle &&
+        !(*options.feature_angle > 0.0 && *options.feature_angle < 180.0)) {
+        throw InputError("mesh: --feature-angle {}; it must lie between 0 and 180 degrees",
+                         *options.feature_angle);
+    }
     if (options.feature_angle) deck.features.angle = *options.feature_angle * degree;
     for (const std::string& name : options.open) {
         if (name == "caps") {
@@ -122,6 +127,12 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     deck.pants.merge = read_weights(options.merge_weights, "--merge");
     deck.pants.most_boundaries = options.most_boundaries.value_or(deck.pants.most_boundaries);
     deck.like = options.like;
+    if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
+                               options.most_boundaries)) {
+        throw InputError(
+            "mesh: --like repeats the cuts of another member; --cycle, --merge and "
+            "--most-boundaries have no place beside it");
+    }
     return deck;
 }
 

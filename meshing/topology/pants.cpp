@@ -34,8 +34,10 @@ class Decomposer {
     PantsDecomposition run() {
         const SurfaceInvariants invariants = compute_invariants(mesh_);
         if (invariants.n_components != 1) {
-            throw TopologyError("pants: the surface has {} components; it must be in one piece",
-                                invariants.n_components);
+            throw TopologyError(
+                "pants: the surface has {} components; it must be in one piece (solids "
+                "with cavities are not cut yet)",
+                invariants.n_components);
         }
         for (const auto edge : mesh_.edges()) {
             if (mesh_.data(edge).curve >= 0) {

@@ -92,11 +92,16 @@ class Tracer {
     // Curves divide the surface: the guide runs where most of its points do.
     void choose_region() {
         mesh_size_ = bounding_box_diagonal(mesh_);
+        // On coarse meshes points of the surface may be far from all vertices.
+        double longest_edge = 0.0;
+        for (const auto edge : mesh_.edges()) {
+            longest_edge = std::max(longest_edge, edge_length(mesh_, edge));
+        }
         region_of_face_ = regions_between_curves(mesh_);
         std::map<int, int> votes;
         const auto anywhere = nearest(-1);
         for (std::size_t k = 0; k < anywhere.size(); ++k) {
-            const double limit = 0.1 * mesh_size_;
+            const double limit = std::max(0.1 * mesh_size_, longest_edge);
             if (!anywhere[k].is_valid()) {
                 throw TopologyError("loop: the surface has no vertex that is free of curves");
             }
@@ -104,7 +109,7 @@ class Tracer {
             if (distance > limit) {
                 throw InputError(
                     "loop: point {} at ({:.6g}, {:.6g}, {:.6g}) lies {:.3g} away from the nearest "
-                    "vertex of the surface; it must be within a tenth of the diagonal, {:.3g}",
+                    "vertex of the surface; it must be within {:.3g}",
                     k, guide_.points[k].x(), guide_.points[k].y(), guide_.points[k].z(), distance,
                     limit);
             }

@@ -105,6 +105,7 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     refused("plate --set P1", "write NAME=NUMBER");
     refused("plate --set P9=3", "unknown parameter 'P9'");
     refused("plate --cycle weight=3", "has no term 'weight'");
+    io::write_text(folder.path() / "text.json", "{}\n");
     refused("plate --fix", "has nothing to repair");
     refused("plate --open lid", "has no face 'lid'");
     refused("plate --open caps", "has no caps");
@@ -113,6 +114,7 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     refused("plate --open-facing 1,1,1", "no plane face");
     refused("plate --most-boundaries 7", "most_boundaries = 7");
     refused("plate --like no.json", "no.json");
+    refused("plate --like text.json --merge length=1", "have no place beside it");
     refused("no_such.stl", "no_such.stl");
     refused("plate --feature-angle 270", "angle");
     io::write_text(folder.path() / "text.stl", "a letter to a friend\n");
