@@ -159,6 +159,33 @@ class Decomposer {
         split_chords_between_curves(mesh_);
     }
 
+    // Puts the vertices into a curve by which its edges were split on a copy of the surface.
+    void refine_curve(int number, const std::vector<int>& vertices, const CutSurface& copy,
+                      const std::vector<VertexHandle>& handles) {
+        std::map<std::pair<int, int>, int> middle;
+        for (const auto& split : copy.splits()) {
+            middle[std::minmax(split.from, split.to)] = split.vertex;
+        }
+        SurfaceCurve& curve = result_.curves[number].curve;
+        curve.vertices.clear();
+        const std::function<void(int, int)> add = [&](int from, int to) {
+            const auto split = middle.find(std::minmax(from, to));
+            if (split == middle.end()) {
+                curve.vertices.push_back(handles[from]);
+                return;
+            }
+            add(from, split->second);
+            add(split->second, to);
+        };
+        for (std::size_t k = 0; k < vertices.size(); ++k) {
+            add(vertices[k], vertices[(k + 1) % vertices.size()]);
+        }
+        for (const HalfedgeHandle h : curve_halfedges(mesh_, curve)) {
+            side_of_[h.idx()] = {number, true};
+            side_of_[mesh_.opposite_halfedge_handle(h).idx()] = {number, false};
+        }
+    }
+
     // Handles that keep off the curves there are, which get their kinds.
     void cut_handles(bool are_cuts, std::size_t n_boundaries) {
         if (result_.genus == 0) return;
@@ -182,6 +209,9 @@ class Decomposer {
             }
         }
         const auto handles = embed_splits(mesh_, loops.surface);
+        for (std::size_t c = 0; c < cuts.size(); ++c) {
+            refine_curve(static_cast<int>(n_boundaries + c), cuts[c], loops.surface, handles);
+        }
         for (const HomologyLoop& loop : loops.tunnels) {
             auto& points = result_.tunnels.emplace_back();
             for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
