@@ -74,6 +74,12 @@ std::vector<int> QuadLayout::valences() const {
     return valences;
 }
 
+int QuadLayout::euler_characteristic() const {
+    const std::vector<int> valence = valences();
+    const auto n_unused = std::ranges::count(valence, 0);
+    return n_nodes_ - static_cast<int>(n_unused) - n_arcs() + n_quads();
+}
+
 std::vector<bool> QuadLayout::boundary_nodes() const {
     std::vector<bool> on_boundary(n_nodes_, false);
     for (int a = 0; a < n_arcs(); ++a) {
@@ -111,6 +117,32 @@ std::vector<int> QuadLayout::sheets() const {
         ++n_sheets;
     }
     return sheet;
+}
+
+std::vector<std::vector<int>> boundary_loops(const QuadLayout& layout) {
+    std::map<int, int> next;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        if (!layout.is_boundary_arc(a)) continue;
+        auto [from, to] = layout.arcs()[a];
+        if (layout.arc_quads(a)[0].quad < 0) std::swap(from, to);
+        if (!next.emplace(from, to).second) {
+            throw TopologyError(
+                "the boundary of the layout passes node {} twice: quads touch there at the node "
+                "only",
+                from);
+        }
+    }
+    std::vector<std::vector<int>> loops;
+    while (!next.empty()) {
+        std::vector<int>& loop = loops.emplace_back();
+        for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
+            if (loop.empty()) loop.push_back(at->first);
+            loop.push_back(at->second);
+            next.erase(at);
+        }
+        loop.pop_back();
+    }
+    return loops;
 }
 
 }  // namespace couture::meshing

@@ -56,6 +56,8 @@ class QuadLayout {
     }
     /// Number of arcs at each node.
     [[nodiscard]] std::vector<int> valences() const;
+    /// Nodes that have arcs, less arcs, plus quads.
+    [[nodiscard]] int euler_characteristic() const;
     /// For each node whether an arc of the boundary ends there.
     [[nodiscard]] std::vector<bool> boundary_nodes() const;
     /// For each arc the number of its sheet: arcs that face each other in a quad belong to the same
@@ -70,5 +72,11 @@ class QuadLayout {
     std::vector<std::array<ArcQuad, 2>> arc_quads_;
     std::map<std::pair<int, int>, int> arc_of_nodes_;
 };
+
+/// Nodes along each boundary loop, the quads on the left; the smallest node of each first, loops in
+/// the order of these.
+///
+/// @throws TopologyError  if the boundary touches itself at a node; names it
+[[nodiscard]] std::vector<std::vector<int>> boundary_loops(const QuadLayout& layout);
 
 }  // namespace couture::meshing

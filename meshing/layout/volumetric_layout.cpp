@@ -45,6 +45,14 @@ std::array<int, 4> VolumetricLayout::nodes_of(const CuboidSide& side) const {
     return nodes;
 }
 
+std::vector<std::array<int, 4>> quads_of(const VolumetricLayout& layout,
+                                         const std::vector<CuboidSide>& sides) {
+    std::vector<std::array<int, 4>> quads;
+    quads.reserve(sides.size());
+    for (const CuboidSide& side : sides) quads.push_back(layout.nodes_of(side));
+    return quads;
+}
+
 LayoutBoundary layout_boundary(const VolumetricLayout& layout) {
     check_nodes(layout);
     std::map<std::array<int, 4>, std::vector<CuboidSide>> sides_of_face;
@@ -76,11 +84,7 @@ LayoutBoundary layout_boundary(const VolumetricLayout& layout) {
         }
     }
     std::ranges::sort(boundary.sides);
-    std::vector<std::array<int, 4>> quads;
-    for (const CuboidSide& side : boundary.sides) {
-        quads.push_back(layout.nodes_of(side));
-    }
-    boundary.layout = QuadLayout(layout.n_nodes, std::move(quads));
+    boundary.layout = QuadLayout(layout.n_nodes, quads_of(layout, boundary.sides));
     return boundary;
 }
 

@@ -35,6 +35,10 @@ struct VolumetricLayout {
     [[nodiscard]] std::array<int, 4> nodes_of(const CuboidSide& side) const;
 };
 
+/// Nodes of each side, as nodes_of.
+[[nodiscard]] std::vector<std::array<int, 4>> quads_of(const VolumetricLayout& layout,
+                                                       const std::vector<CuboidSide>& sides);
+
 /// The boundary of a volumetric layout, by the nodes of the volume.
 struct LayoutBoundary {
     QuadLayout layout;
