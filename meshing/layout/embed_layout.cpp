@@ -1,7 +1,9 @@
 #include "meshing/layout/embed_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -18,6 +20,9 @@
 namespace couture::meshing {
 
 namespace {
+
+// Two arcs along features that turn by more meet in a corner.
+constexpr double largest_turn = std::numbers::pi / 4.0;
 
 // Draws arcs on the mesh, region by region.
 class Drawing {
@@ -43,6 +48,7 @@ class Drawing {
             draw_region(region);
         }
         number_faces();
+        find_corner_nodes();
         return std::move(embedded_);
     }
 
@@ -79,9 +85,6 @@ class Drawing {
             embedded_.is_feature_arc[arc] = tie.is_feature;
             start = stop;
         }
-        if (!tie.is_feature) return;
-        embedded_.is_corner_node[tie.nodes.front()] = true;
-        embedded_.is_corner_node[tie.nodes.back()] = true;
     }
 
     int draw_arc(int from, int to, std::vector<VertexHandle> path, const std::string& who) {
@@ -387,6 +390,27 @@ class Drawing {
                     stack.push_back(mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
                 }
             }
+        }
+    }
+
+    // Nodes where other than two arcs along features meet, or two that turn.
+    void find_corner_nodes() {
+        std::vector<std::vector<Vector3>> directions(layout_.n_nodes());
+        for (int a = 0; a < layout_.n_arcs(); ++a) {
+            if (!embedded_.is_feature_arc[a]) continue;
+            const auto& path = embedded_.arcs[a];
+            const auto direction = [&](VertexHandle from, VertexHandle to) {
+                return (mesh_.point(to) - mesh_.point(from)).normalized();
+            };
+            directions[layout_.arcs()[a].from].push_back(direction(path[0], path[1]));
+            directions[layout_.arcs()[a].to].push_back(
+                direction(path[path.size() - 1], path[path.size() - 2]));
+        }
+        for (int n = 0; n < layout_.n_nodes(); ++n) {
+            const auto& at = directions[n];
+            embedded_.is_corner_node[n] =
+                at.size() == 1 || at.size() > 2 ||
+                (at.size() == 2 && at[0].dot(at[1]) > -std::cos(largest_turn));
         }
     }
 

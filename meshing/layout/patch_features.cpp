@@ -60,7 +60,7 @@ class Collector {
         PatchFeatures& features = patches_[patch];
         const int number = static_cast<int>(features.loops.size());
         PatchFeatures::Loop loop{side, pants_.curves[side.curve].curve.vertices, {}};
-        if (!side.is_left) std::ranges::reverse(loop.vertices);
+        if (!side.is_left) std::reverse(loop.vertices.begin() + 1, loop.vertices.end());
         const std::size_t n = loop.vertices.size();
         for (std::size_t k = 0; k < n; ++k) {
             const VertexHandle v = loop.vertices[k];

@@ -28,7 +28,7 @@ struct PatchFeatures {
     };
     struct Loop {
         CurveSide side;
-        /// In order, the patch on the left.
+        /// In order, the patch on the left, from the first vertex of the decomposition's curve.
         std::vector<VertexHandle> vertices;
         /// Nodes on it, in order.
         std::vector<int> nodes;

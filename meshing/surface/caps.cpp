@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "iga/core/error.h"
+#include "meshing/surface/hole_filling.h"
 
 namespace couture::meshing {
 
@@ -49,6 +52,46 @@ void check_cap(const Features& features, const Cap& cap) {
             "has one",
             cap.name, x.x(), x.y(), x.z(), region.n_loops);
     }
+}
+
+// The vertices between the two old ends of a boundary edge that was split, by these ends in the
+// direction of the triangles that close the boundary.
+using RimSplits = std::map<std::pair<int, int>, std::vector<int>>;
+
+RimSplits rim_splits(const SurfaceMesh& opened, int n_old) {
+    RimSplits splits;
+    for (const auto h : opened.halfedges()) {
+        if (!opened.is_boundary(h) || opened.from_vertex_handle(h).idx() >= n_old) continue;
+        std::vector<int> between;
+        HalfedgeHandle last = h;
+        while (opened.to_vertex_handle(last).idx() >= n_old) {
+            between.push_back(opened.to_vertex_handle(last).idx());
+            last = opened.next_halfedge_handle(last);
+        }
+        if (between.empty()) continue;
+        splits[{opened.from_vertex_handle(h).idx(), opened.to_vertex_handle(last).idx()}] =
+            std::move(between);
+    }
+    return splits;
+}
+
+// A triangle, divided where its edges were.
+void add_split(const std::array<int, 3>& triangle, RimSplits& splits,
+               std::vector<std::array<int, 3>>& triangles) {
+    for (int k = 0; k < 3; ++k) {
+        const auto [a, b, c] =
+            std::array{triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
+        const auto split = splits.find({a, b});
+        if (split == splits.end()) continue;
+        const int first = split->second.front();
+        std::vector<int> rest(split->second.begin() + 1, split->second.end());
+        splits.erase(split);
+        if (!rest.empty()) splits[{first, b}] = std::move(rest);
+        add_split({a, first, c}, splits, triangles);
+        add_split({first, b, c}, splits, triangles);
+        return;
+    }
+    triangles.push_back(triangle);
 }
 
 }  // namespace
@@ -139,6 +182,76 @@ OpenedSurface open_caps(const SurfaceMesh& mesh, const Features& features,
                             caps.size());
     }
     return opened;
+}
+
+ClosingCaps caps_of(const SurfaceMesh& closed, const OpenedSurface& opened) {
+    ClosingCaps caps;
+    caps.n_vertices = static_cast<int>(opened.vertices.size());
+    std::vector<int> number(closed.n_vertices(), -1);
+    for (int v = 0; v < caps.n_vertices; ++v) number[opened.vertices[v]] = v;
+    std::vector<bool> is_kept(closed.n_faces(), false);
+    for (const int triangle : opened.triangles) is_kept[triangle] = true;
+    for (const auto face : closed.faces()) {
+        if (is_kept[face.idx()]) continue;
+        auto& triangle = caps.triangles.emplace_back();
+        const auto vertices = face_vertices(closed, face);
+        for (int k = 0; k < 3; ++k) {
+            int& n = number[vertices[k].idx()];
+            if (n < 0) {
+                n = caps.n_vertices + static_cast<int>(caps.points.size());
+                caps.points.push_back(closed.point(vertices[k]));
+            }
+            triangle[k] = n;
+        }
+    }
+    return caps;
+}
+
+ClosingCaps fill_boundaries(const SurfaceMesh& surface) {
+    ClosingCaps caps;
+    caps.n_vertices = static_cast<int>(surface.n_vertices());
+    std::vector<bool> is_seen(surface.n_halfedges(), false);
+    for (const auto start : surface.halfedges()) {
+        if (!surface.is_boundary(start) || is_seen[start.idx()]) continue;
+        // The way of a boundary halfedge has what fills the loop on its left.
+        std::vector<int> rim;
+        std::vector<Vector3> points;
+        for (HalfedgeHandle h = start; !is_seen[h.idx()]; h = surface.next_halfedge_handle(h)) {
+            is_seen[h.idx()] = true;
+            rim.push_back(surface.from_vertex_handle(h).idx());
+            points.push_back(surface.point(surface.from_vertex_handle(h)));
+        }
+        const auto triangles = fill_loop(points);
+        if (triangles.empty()) {
+            throw TopologyError(
+                "caps: the boundary loop of {} vertices at ({:.6g}, {:.6g}, {:.6g}) can't be "
+                "filled",
+                rim.size(), points[0].x(), points[0].y(), points[0].z());
+        }
+        for (const auto& [a, b, c] : triangles) caps.triangles.push_back({rim[a], rim[b], rim[c]});
+    }
+    return caps;
+}
+
+SurfaceMesh close_caps(const SurfaceMesh& opened, const ClosingCaps& caps) {
+    TriangleSoup soup = to_soup(opened);
+    const int behind = static_cast<int>(soup.points.size());
+    soup.points.insert(soup.points.end(), caps.points.begin(), caps.points.end());
+    RimSplits splits = rim_splits(opened, caps.n_vertices);
+    for (auto triangle : caps.triangles) {
+        for (int& v : triangle) {
+            if (v >= caps.n_vertices) v += behind - caps.n_vertices;
+        }
+        add_split(triangle, splits, soup.triangles);
+    }
+    SurfaceMesh closed = make_surface_mesh(soup);
+    for (const auto v : closed.vertices()) {
+        if (!closed.is_boundary(v)) continue;
+        const Vector3& x = closed.point(v);
+        throw TopologyError("caps: the surface stays open at ({:.6g}, {:.6g}, {:.6g})", x.x(),
+                            x.y(), x.z());
+    }
+    return closed;
 }
 
 }  // namespace couture::meshing

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,25 @@ struct OpenedSurface {
     std::vector<int> cap_of_vertex;
 };
 
+/// Triangles that close the boundary loops of a surface.
+struct ClosingCaps {
+    /// Numbers below `n_vertices` are the surface's vertices, the others those of `points` behind
+    /// them.
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<Vector3> points;
+    int n_vertices = 0;
+};
+
+/// The caps that were taken off a surface.
+///
+/// @param closed  what the surface was opened from
+[[nodiscard]] ClosingCaps caps_of(const SurfaceMesh& closed, const OpenedSurface& opened);
+
+/// Fills every boundary loop (see fill_loop).
+///
+/// @throws TopologyError  for a loop that can't be filled
+[[nodiscard]] ClosingCaps fill_boundaries(const SurfaceMesh& surface);
+
 /// The smooth face at the point of the surface that is nearest to x. O(n).
 [[nodiscard]] int region_near(const SurfaceMesh& mesh, const Vector3& x);
 
@@ -45,5 +65,13 @@ struct OpenedSurface {
 ///                        that touch each other or the boundary; if nothing but caps is left
 [[nodiscard]] OpenedSurface open_caps(const SurfaceMesh& mesh, const Features& features,
                                       std::span<const Cap> caps);
+
+/// Puts caps back on a surface that was opened, and perhaps refined since: its vertices and faces
+/// keep their numbers, those of the caps come behind them.
+///
+/// @param caps  of the surface before it was refined; triangles at edges that were split since are
+///              split too
+/// @throws TopologyError  if caps and rims don't fit
+[[nodiscard]] SurfaceMesh close_caps(const SurfaceMesh& opened, const ClosingCaps& caps);
 
 }  // namespace couture::meshing
