@@ -16,6 +16,7 @@
 #include "meshing/topology/invariants.h"
 #include "meshing/topology/least_cost.h"
 #include "meshing/topology/n_pants.h"
+#include "meshing/topology/tight_loop.h"
 
 namespace couture::meshing {
 
@@ -207,7 +208,7 @@ class Decomposer {
             }
         }
         const HandleTunnelLoops loops =
-            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops);
+            find_handle_tunnel_loops(whole, cuts, are_cuts && options_.only_given_loops);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
             if (loops.is_handle_cut[c]) {
                 result_.curves[n_boundaries + c].kind = PantsCurveKind::handle;
@@ -369,13 +370,26 @@ class Decomposer {
                 return *candidate.score;
             },
             same_score);
-        remove_pant(add_cycle(find(pairs[best]), pairs[best]));
+        remove_pant(add_cycle(tightened(embed(find(pairs[best]))), pairs[best]));
     }
 
-    int add_cycle(const HomotopicCycle& cycle, const Pair& around) {
+    [[nodiscard]] SurfaceCurve embed(const HomotopicCycle& cycle) {
         const auto vertices = embed_splits(mesh_, cycle.surface);
         SurfaceCurve curve;
         for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
+        return curve;
+    }
+
+    // The cuts beside which a cycle is looked for may be in the way of a shorter one.
+    [[nodiscard]] SurfaceCurve tightened(const SurfaceCurve& curve) const {
+        constexpr double relative_radius = 0.1;
+        return tighten_loop(mesh_, curve, relative_radius * bounding_box_diagonal(mesh_),
+                            [&](VertexHandle vertex) {
+                                return cycle_criterion_.factor(mesh_.data(vertex).source);
+                            });
+    }
+
+    int add_cycle(SurfaceCurve curve, const Pair& around) {
         const int number =
             add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
         split_chords_between_curves(mesh_);
@@ -445,7 +459,7 @@ class Decomposer {
                 }
             }
         }
-        add_cycle(*best, around);
+        add_cycle(embed(*best), around);
     }
 
     [[nodiscard]] std::set<int> passed(const CutSurface& piece, const HomotopicCycle& cycle) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "iga/core/error.h"
@@ -24,24 +25,22 @@ void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     }
 }
 
+// All vertices of a curve, and points between those that are farther apart than the samples.
 GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     const std::size_t n = curve.vertices.size();
     const double step = curve_length(mesh, curve) / n_samples;
     GuideLoop samples;
-    double gone = 0.0;
-    double next = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
         const VertexHandle a = curve.vertices[k];
         const VertexHandle b = curve.vertices[(k + 1) % n];
         const double length = (mesh.point(b) - mesh.point(a)).norm();
-        while (samples.points.size() < n_samples && next < gone + length) {
-            const double t = (next - gone) / length;
+        const int n_parts = std::max(1, static_cast<int>(std::ceil(length / step)));
+        for (int i = 0; i < n_parts; ++i) {
+            const double t = static_cast<double>(i) / n_parts;
             samples.points.emplace_back((1.0 - t) * mesh.point(a) + t * mesh.point(b));
             samples.normals.push_back(
                 ((1.0 - t) * vertex_normal(mesh, a) + t * vertex_normal(mesh, b)).normalized());
-            next += step;
         }
-        gone += length;
     }
     return samples;
 }

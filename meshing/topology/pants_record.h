@@ -29,7 +29,8 @@ struct PantsRecord {
         PantsCurveKind kind = PantsCurveKind::cycle;
         /// Of boundary loops: the cap's, or empty.
         std::string name;
-        /// Evenly spaced along it, with the normals of the surface.
+        /// Through its vertices, and points between them that are at most a 24th of its length
+        /// apart; with the normals of the surface.
         GuideLoop shape;
     };
     /// As in PantsDecomposition.
