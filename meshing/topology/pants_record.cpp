@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "iga/core/error.h"
@@ -12,8 +11,6 @@
 namespace couture::meshing {
 
 namespace {
-
-constexpr int n_samples = 24;
 
 void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     low = Vector3::Constant(std::numeric_limits<double>::infinity());
@@ -25,22 +22,11 @@ void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     }
 }
 
-// All vertices of a curve, and points between those that are farther apart than the samples.
-GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
-    const std::size_t n = curve.vertices.size();
-    const double step = curve_length(mesh, curve) / n_samples;
+GuideLoop shape_of(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     GuideLoop samples;
-    for (std::size_t k = 0; k < n; ++k) {
-        const VertexHandle a = curve.vertices[k];
-        const VertexHandle b = curve.vertices[(k + 1) % n];
-        const double length = (mesh.point(b) - mesh.point(a)).norm();
-        const int n_parts = std::max(1, static_cast<int>(std::ceil(length / step)));
-        for (int i = 0; i < n_parts; ++i) {
-            const double t = static_cast<double>(i) / n_parts;
-            samples.points.emplace_back((1.0 - t) * mesh.point(a) + t * mesh.point(b));
-            samples.normals.push_back(
-                ((1.0 - t) * vertex_normal(mesh, a) + t * vertex_normal(mesh, b)).normalized());
-        }
+    for (const VertexHandle vertex : curve.vertices) {
+        samples.points.push_back(mesh.point(vertex));
+        samples.normals.push_back(vertex_normal(mesh, vertex));
     }
     return samples;
 }
@@ -196,7 +182,7 @@ PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pant
     record.genus = pants.genus;
     for (const PantsCurve& curve : pants.curves) {
         record.curves.push_back(
-            {.kind = curve.kind, .name = curve.name, .shape = sample_curve(mesh, curve.curve)});
+            {.kind = curve.kind, .name = curve.name, .shape = shape_of(mesh, curve.curve)});
     }
     for (const PantsPatch& patch : pants.patches) record.patches.push_back(patch.boundary);
     return record;

@@ -29,8 +29,7 @@ struct PantsRecord {
         PantsCurveKind kind = PantsCurveKind::cycle;
         /// Of boundary loops: the cap's, or empty.
         std::string name;
-        /// Through its vertices, and points between them that are at most a 24th of its length
-        /// apart; with the normals of the surface.
+        /// Its vertices, with the normals of the surface.
         GuideLoop shape;
     };
     /// As in PantsDecomposition.
