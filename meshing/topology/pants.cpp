@@ -10,10 +10,13 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/topology/cycle_bounds.h"
 #include "meshing/topology/handle_tunnel_loops.h"
 #include "meshing/topology/homotopic_cycle.h"
 #include "meshing/topology/invariants.h"
+#include "meshing/topology/least_cost.h"
 #include "meshing/topology/n_pants.h"
+#include "meshing/topology/tight_loop.h"
 
 namespace couture::meshing {
 
@@ -79,11 +82,14 @@ class Decomposer {
     }
 
   private:
-    // A cycle that was found, by vertices of the mesh or points of its own.
+    // A cycle around two loops that are left.
     struct Candidate {
-        double score = 0.0;
-        // Vertices of the mesh on the cycle and on the path that it runs around.
-        std::set<int> passed;
+        // No cycle around them scores less, then or later.
+        double bound = 0.0;
+        // Of the one that was found.
+        std::optional<double> score = {};
+        // Vertices of the mesh on that cycle and on the path that it runs around.
+        std::set<int> passed = {};
     };
     using Pair = std::array<CurveSide, 2>;
 
@@ -202,7 +208,7 @@ class Decomposer {
             }
         }
         const HandleTunnelLoops loops =
-            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops);
+            find_handle_tunnel_loops(whole, cuts, are_cuts && options_.only_given_loops);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
             if (loops.is_handle_cut[c]) {
                 result_.curves[n_boundaries + c].kind = PantsCurveKind::handle;
@@ -317,40 +323,73 @@ class Decomposer {
         }
     }
 
-    void cut_off_pant() {
-        const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
-        const HomotopicCycles cycles(piece, factors(piece));
-        const Sides sides = sides_of(piece, cycles.loops());
-        std::map<Pair, Candidate> known;
-        std::optional<Pair> best;
-        std::array<int, 2> best_loops{};
-        double best_score = std::numeric_limits<double>::infinity();
+    // Candidates of before the last cut that are left, and those around its loop.
+    void update_candidates(const CutSurface& piece, const std::vector<std::vector<int>>& loops,
+                           const Sides& sides) {
+        const CycleBounds bounds(piece, loops);
+        std::map<Pair, Candidate> left;
         for (std::size_t i = 0; i < sides.size(); ++i) {
             for (std::size_t j = i + 1; j < sides.size(); ++j) {
                 const Pair pair{sides[i].first, sides[j].first};
                 auto entry = candidates_.extract(pair);
                 if (entry.empty()) {
-                    const HomotopicCycle cycle = cycles.find(sides[i].second, sides[j].second);
-                    known[pair] = {score(cycle), passed(piece, cycle)};
+                    const double length = bounds.length_around(sides[i].second, sides[j].second);
+                    left[pair].bound = (1.0 - same_score) * merge_criterion_.least_score(length);
                 } else {
-                    known[pair] = std::move(entry.mapped());
-                }
-                const double found = known[pair].score;
-                if (found < best_score - same_score * std::abs(best_score) || !best) {
-                    best = pair;
-                    best_loops = {sides[i].second, sides[j].second};
-                    best_score = found;
+                    left.insert(std::move(entry));
                 }
             }
         }
-        candidates_ = std::move(known);
-        remove_pant(add_cycle(cycles.find(best_loops[0], best_loops[1]), *best));
+        candidates_ = std::move(left);
     }
 
-    int add_cycle(const HomotopicCycle& cycle, const Pair& around) {
+    void cut_off_pant() {
+        const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
+        const HomotopicCycles cycles(piece, factors(piece));
+        const Sides sides = sides_of(piece, cycles.loops());
+        const std::map<CurveSide, int> loop_of(sides.begin(), sides.end());
+        update_candidates(piece, cycles.loops(), sides);
+        std::vector<Pair> pairs;
+        std::vector<double> bounds;
+        for (const auto& [pair, candidate] : candidates_) {
+            pairs.push_back(pair);
+            bounds.push_back(candidate.score.value_or(candidate.bound));
+        }
+        const auto find = [&](const Pair& pair) {
+            return cycles.find(loop_of.at(pair[0]), loop_of.at(pair[1]));
+        };
+        const int best = find_least_cost(
+            bounds,
+            [&](int k) {
+                Candidate& candidate = candidates_.at(pairs[k]);
+                if (!candidate.score) {
+                    const HomotopicCycle cycle = find(pairs[k]);
+                    candidate.score = score(cycle);
+                    candidate.passed = passed(piece, cycle);
+                }
+                return *candidate.score;
+            },
+            same_score);
+        remove_pant(add_cycle(tightened(embed(find(pairs[best]))), pairs[best]));
+    }
+
+    [[nodiscard]] SurfaceCurve embed(const HomotopicCycle& cycle) {
         const auto vertices = embed_splits(mesh_, cycle.surface);
         SurfaceCurve curve;
         for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
+        return curve;
+    }
+
+    // The cuts beside which a cycle is looked for may be in the way of a shorter one.
+    [[nodiscard]] SurfaceCurve tightened(const SurfaceCurve& curve) const {
+        constexpr double relative_radius = 0.1;
+        return tighten_loop(mesh_, curve, relative_radius * bounding_box_diagonal(mesh_),
+                            [&](VertexHandle vertex) {
+                                return cycle_criterion_.factor(mesh_.data(vertex).source);
+                            });
+    }
+
+    int add_cycle(SurfaceCurve curve, const Pair& around) {
         const int number =
             add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
         split_chords_between_curves(mesh_);
@@ -420,7 +459,7 @@ class Decomposer {
                 }
             }
         }
-        add_cycle(*best, around);
+        add_cycle(embed(*best), around);
     }
 
     [[nodiscard]] std::set<int> passed(const CutSurface& piece, const HomotopicCycle& cycle) const {
@@ -453,10 +492,12 @@ class Decomposer {
             if (region[face.idx()] != pant) continue;
             for (const VertexHandle vertex : face_vertices(mesh_, face)) gone.insert(vertex.idx());
         }
-        std::erase_if(candidates_, [&](const auto& entry) {
-            return std::any_of(entry.second.passed.begin(), entry.second.passed.end(),
-                               [&](int v) { return gone.contains(v); });
-        });
+        for (auto& [pair, candidate] : candidates_) {
+            if (std::any_of(candidate.passed.begin(), candidate.passed.end(),
+                            [&](int v) { return gone.contains(v); })) {
+                candidate = {.bound = candidate.bound};
+            }
+        }
     }
 
     void finish(const SurfaceInvariants& invariants) {

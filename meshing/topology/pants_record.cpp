@@ -12,8 +12,6 @@ namespace couture::meshing {
 
 namespace {
 
-constexpr int n_samples = 24;
-
 void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     low = Vector3::Constant(std::numeric_limits<double>::infinity());
     high = -low;
@@ -24,24 +22,11 @@ void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     }
 }
 
-GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
-    const std::size_t n = curve.vertices.size();
-    const double step = curve_length(mesh, curve) / n_samples;
+GuideLoop shape_of(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     GuideLoop samples;
-    double gone = 0.0;
-    double next = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const VertexHandle a = curve.vertices[k];
-        const VertexHandle b = curve.vertices[(k + 1) % n];
-        const double length = (mesh.point(b) - mesh.point(a)).norm();
-        while (samples.points.size() < n_samples && next < gone + length) {
-            const double t = (next - gone) / length;
-            samples.points.emplace_back((1.0 - t) * mesh.point(a) + t * mesh.point(b));
-            samples.normals.push_back(
-                ((1.0 - t) * vertex_normal(mesh, a) + t * vertex_normal(mesh, b)).normalized());
-            next += step;
-        }
-        gone += length;
+    for (const VertexHandle vertex : curve.vertices) {
+        samples.points.push_back(mesh.point(vertex));
+        samples.normals.push_back(vertex_normal(mesh, vertex));
     }
     return samples;
 }
@@ -197,7 +182,7 @@ PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pant
     record.genus = pants.genus;
     for (const PantsCurve& curve : pants.curves) {
         record.curves.push_back(
-            {.kind = curve.kind, .name = curve.name, .shape = sample_curve(mesh, curve.curve)});
+            {.kind = curve.kind, .name = curve.name, .shape = shape_of(mesh, curve.curve)});
     }
     for (const PantsPatch& patch : pants.patches) record.patches.push_back(patch.boundary);
     return record;

@@ -29,7 +29,7 @@ struct PantsRecord {
         PantsCurveKind kind = PantsCurveKind::cycle;
         /// Of boundary loops: the cap's, or empty.
         std::string name;
-        /// Evenly spaced along it, with the normals of the surface.
+        /// Its vertices, with the normals of the surface.
         GuideLoop shape;
     };
     /// As in PantsDecomposition.
