@@ -116,7 +116,9 @@ io::DescribedSurface load_surface(const std::string& command, const SurfaceInput
         turned.clear();
     }
     if (options.shell) {
-        surface.soup = meshing::select_shell(surface.soup, *options.shell);
+        meshing::SelectedShell selected = meshing::select_shell(surface.soup, *options.shell);
+        surface.soup = std::move(selected.soup);
+        if (selected.was_cavity) surface.former_cavity = *options.shell;
         turned.clear();
     }
     surface.n_shells_turned = meshing::orient_outwards(surface.soup, turned);
@@ -133,7 +135,9 @@ meshing::SurfaceMesh make_checked_mesh(const std::string& command,
             fmt::format("{}: {} triangles ran against their neighbours; they are turned round",
                         command, surface.repair.n_turned));
     }
-    if (surface.n_shells_turned > 0) {
+    if (surface.former_cavity) {
+        log::info(fmt::format("{}: {}", command, io::describe_former_cavity(surface)));
+    } else if (surface.n_shells_turned > 0) {
         log::warn(fmt::format("{}: {} of the surface {} inside out; {} turned round", command,
                               surface.n_shells_turned == 1
                                   ? "a shell"

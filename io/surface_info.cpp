@@ -172,6 +172,12 @@ Json describe(const DescribedSurface& surface) {
 
 }  // namespace
 
+std::string describe_former_cavity(const DescribedSurface& surface) {
+    return fmt::format(
+        "shell {} is the wall of a cavity; what lies inside it is taken as a body, turned outwards",
+        surface.former_cavity.value());
+}
+
 std::vector<std::string> describe_changes(const DescribedSurface& surface) {
     std::vector<std::string> lines;
     const auto add = [&](int n, const char* one, const char* many, const char* what,
@@ -195,7 +201,11 @@ std::vector<std::string> describe_changes(const DescribedSurface& surface) {
     add(file.n_unused + repair.n_unused, "point", "points", "of no triangle dropped");
     add(repair.n_turned, "triangle", "triangles", "turned to run as their neighbours",
         repair.turned);
-    add(surface.n_shells_turned, "shell", "shells", "turned outwards");
+    if (surface.former_cavity) {
+        lines.push_back(describe_former_cavity(surface));
+    } else {
+        add(surface.n_shells_turned, "shell", "shells", "turned outwards");
+    }
     if (!surface.fix) return lines;
     const FixReport& fix = *surface.fix;
     if (fix.n_welded > 0) {
