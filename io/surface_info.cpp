@@ -157,6 +157,12 @@ Json describe(const DescribedSurface& surface) {
                            {"hole_triangles", fix->n_hole_triangles},
                            {"open_holes", fix->n_open_holes}};
     }
+    if (surface.part) {
+        result["corners"] = Json::object();
+        for (const PartCorner& corner : surface.part->corners) {
+            result["corners"][corner.name] = to_array(surface.part->soup.points[corner.vertex]);
+        }
+    }
     result["changes"] = describe_changes(surface);
     result["problems"] = Json::array();
     for (const SurfaceFlaw& flaw : check.flaws) {
@@ -270,6 +276,12 @@ std::string surface_info_text(const DescribedSurface& surface) {
         text += fmt::format("solid: {}, Betti numbers {} {} {}\n",
                             count(solid->betti[2], "cavity", "cavities"), solid->betti[0],
                             solid->betti[1], solid->betti[2]);
+    }
+    if (surface.part) {
+        for (const PartCorner& corner : surface.part->corners) {
+            text += fmt::format("corner {}: {}\n", corner.name,
+                                place(surface.part->soup.points[corner.vertex]));
+        }
     }
     for (const std::string& line : describe_changes(surface)) {
         text += fmt::format("note: {}\n", line);

@@ -32,6 +32,37 @@ class Decomposer {
           merge_criterion_(mesh, options.merge, planes_, "criterion of the merge") {}
 
     PantsDecomposition run() {
+        add_given_loops();
+        for (std::size_t s = 0; s < shells_.size(); ++s) cut_handles(static_cast<int>(s));
+        if (options_.only_handles) {
+            result_.patch_of_face = regions_between_curves(mesh_);
+            return std::move(result_);
+        }
+        for (const SurfaceInvariants& shell : shells_) {
+            n_pants_ += std::max(0, -shell.euler_characteristic);
+        }
+        for (const auto& points : options_.cycles_through) cut_through(points);
+        cut_into_pants();
+        finish();
+        if (options_.most_boundaries > 3 && n_pants_ > 1) {
+            report("putting pants together", 0.0);
+            merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
+        }
+        return std::move(result_);
+    }
+
+    // Loops are followed, points found; nothing else is cut.
+    void run_given() {
+        add_given_loops();
+        for (const auto& points : options_.cycles_through) {
+            if (points.empty()) throw no_points();
+            for (const Vector3& point : points) static_cast<void>(nearest_free(point));
+        }
+    }
+
+  private:
+    // Boundary loops and given loops become the first curves.
+    void add_given_loops() {
         shells_ = component_invariants(mesh_);
         for (const auto edge : mesh_.edges()) {
             if (mesh_.data(edge).curve >= 0) {
@@ -52,27 +83,14 @@ class Decomposer {
         }
         check_options();
         split_chords_between_curves(mesh_);
-        const std::size_t n_boundaries = result_.curves.size();
+        n_boundaries_ = result_.curves.size();
         for (const GuideLoop& loop : options_.loops) add_loop(loop);
-        for (std::size_t s = 0; s < shells_.size(); ++s) cut_handles(s, n_boundaries);
-        if (options_.only_handles) {
-            result_.patch_of_face = regions_between_curves(mesh_);
-            return std::move(result_);
-        }
-        for (const SurfaceInvariants& shell : shells_) {
-            n_pants_ += std::max(0, -shell.euler_characteristic);
-        }
-        for (const auto& points : options_.cycles_through) cut_through(points);
-        cut_into_pants();
-        finish();
-        if (options_.most_boundaries > 3 && n_pants_ > 1) {
-            report("putting pants together", 0.0);
-            merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
-        }
-        return std::move(result_);
     }
 
-  private:
+    static InputError no_points() {
+        return InputError("pants: a cycle through no points; give at least one");
+    }
+
     // A cycle that was found, by vertices of the mesh or points of its own.
     struct Candidate {
         double score = 0.0;
@@ -194,8 +212,10 @@ class Decomposer {
     }
 
     // Handles of a shell that keep off the curves there are, which get their kinds.
-    void cut_handles(int shell, std::size_t n_boundaries) {
+    void cut_handles(int shell) {
         if (shells_[shell].genus == 0) return;
+        // A torus is a patch of its own.
+        const bool has_pants = is_cut_into_pants(shells_[shell]);
         report("looking for handle and tunnel loops", 0.0);
         const CutSurface whole(mesh_, faces_of_shell(shell),
                                std::vector<bool>(mesh_.n_edges(), false));
@@ -203,7 +223,7 @@ class Decomposer {
         for (int v = 0; v < whole.n_vertices(); ++v) number[whole.parent(v)] = v;
         std::vector<std::vector<int>> cuts;
         std::vector<int> curve_of_cut;
-        for (std::size_t c = n_boundaries; c < n_boundaries + options_.loops.size(); ++c) {
+        for (std::size_t c = n_boundaries_; c < n_boundaries_ + options_.loops.size(); ++c) {
             const auto& vertices = result_.curves[c].curve.vertices;
             if (number[vertices.front().idx()] < 0) continue;
             curve_of_cut.push_back(static_cast<int>(c));
@@ -211,7 +231,7 @@ class Decomposer {
             for (const VertexHandle v : vertices) cut.push_back(number[v.idx()]);
         }
         const HandleTunnelLoops loops =
-            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops);
+            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops && has_pants);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
             if (loops.is_handle_cut[c]) {
                 result_.curves[curve_of_cut[c]].kind = PantsCurveKind::handle;
@@ -225,8 +245,7 @@ class Decomposer {
             auto& points = result_.tunnels.emplace_back();
             for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
         }
-        // A torus is a patch of its own.
-        if (!is_cut_into_pants(shells_[shell])) return;
+        if (!has_pants) return;
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve curve;
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
@@ -408,7 +427,7 @@ class Decomposer {
     // Cuts along the shortest cycle that passes some points, whichever loops it runs around.
     void cut_through(const std::vector<Vector3>& points) {
         report("cutting through given points", 0.0);
-        if (points.empty()) throw InputError("pants: a cycle through no points; give at least one");
+        if (points.empty()) throw no_points();
         std::set<int> wanted;
         for (const Vector3& point : points) wanted.insert(nearest_free(point).idx());
         std::optional<HomotopicCycle> best;
@@ -536,6 +555,7 @@ class Decomposer {
     PantsDecomposition result_;
     // Connected components, see face_components.
     std::vector<SurfaceInvariants> shells_;
+    std::size_t n_boundaries_ = 0;
     std::map<int, CurveSide> side_of_;
     std::vector<FaceHandle> rest_;
     int n_pants_ = 0;
@@ -559,6 +579,10 @@ std::string_view to_string(PantsCurveKind kind) {
 
 PantsDecomposition decompose_into_pants(SurfaceMesh& mesh, const PantsOptions& options) {
     return Decomposer(mesh, options).run();
+}
+
+void check_given_curves(SurfaceMesh& mesh, const PantsOptions& options) {
+    Decomposer(mesh, options).run_given();
 }
 
 }  // namespace couture::meshing

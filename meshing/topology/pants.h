@@ -130,4 +130,10 @@ struct PantsDecomposition {
 [[nodiscard]] PantsDecomposition decompose_into_pants(SurfaceMesh& mesh,
                                                       const PantsOptions& options = {});
 
+/// Whether the loops and points of the options can be followed on the mesh, which is marked with
+/// the loops. Nothing else is cut.
+///
+/// @throws  as decompose_into_pants for its options, and for loops and points
+void check_given_curves(SurfaceMesh& mesh, const PantsOptions& options);
+
 }  // namespace couture::meshing

@@ -148,10 +148,15 @@ std::vector<int> match_boundaries(const PantsRecord& record, const SurfaceMesh& 
     }
     const auto loops = boundary_loops(mesh);
     if (loops.size() != wanted.size()) {
+        std::string open_there;
+        for (const PantsRecord::Curve* curve : wanted) {
+            open_there += fmt::format("{}{}", open_there.empty() ? ": " : ", ",
+                                      curve->name.empty() ? "one without a name" : curve->name);
+        }
         throw TopologyError(
-            "replay: the surface has {} boundary loops, the recorded one has {}; open the same "
-            "caps",
-            loops.size(), wanted.size());
+            "replay: the surface has {} boundary loops, the recorded one has {}{}; open the same "
+            "caps (--open, --open-at, --open-facing)",
+            loops.size(), wanted.size(), open_there);
     }
     std::vector<char> is_taken(loops.size(), 0);
     std::vector<int> order;
