@@ -1,5 +1,6 @@
 #include "io/picture_check.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

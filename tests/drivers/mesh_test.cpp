@@ -67,7 +67,7 @@ TEST_CASE("mesh: another member of a family is cut as the first one was", "[driv
     const auto member = nlohmann::json::parse(second.output);
     CHECK(member["patches"] == reference["patches"]);
     CHECK(std::filesystem::exists(folder.path() / "second/seal_pants.json"));
-    run_couture("convert seal --edge-length 4 seal.off", folder.path());
+    REQUIRE(run_couture("convert seal --edge-length 4 seal.off", folder.path()).exit_code == 0);
     const auto closed = run_couture("mesh seal.off --like first/seal_pants.json", folder.path());
     CHECK(closed.exit_code == 2);
     CHECK_THAT(closed.errors, Contains("open the same caps") && Contains("cap_x_low"));
