@@ -146,7 +146,7 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
         CHECK_THAT(result.errors, Contains(text));
     };
     refused("plate --stage pant", "did you mean 'pants'?");
-    refused("plaet", "there is no file and no part 'plaet'; did you mean 'plate'?");
+    refused("wheal", "there is no file and no part 'wheal'; did you mean 'wheel'?");
     refused("--set P1=25 plate --stage pant", "did you mean 'pants'?");
     refused("plate --set P1", "write NAME=NUMBER");
     refused("plate --set P9=3", "unknown parameter 'P9'");
