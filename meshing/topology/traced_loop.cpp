@@ -154,7 +154,8 @@ class Tracer {
             if (reached < 0) {
                 throw TopologyError(
                     "loop: no way from ({:.6g}, {:.6g}, {:.6g}) to the next point that crosses no "
-                    "other curve and no boundary",
+                    "other curve and no boundary; given loops must not cross: move the points of "
+                    "this one or leave one out",
                     piece.point(source).x(), piece.point(source).y(), piece.point(source).z());
             }
             auto vertices = search.vertices_to(reached);

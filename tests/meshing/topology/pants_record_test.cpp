@@ -132,8 +132,9 @@ TEST_CASE("replay_pants: another topology is refused", "[topology][parts]") {
         open.landmarks);
     Member closed = make_member("seal", {}, 0.0, false);
     REQUIRE_THROWS_WITH(replay_pants(closed.mesh, of_seal, {}, closed.landmarks),
-                        "replay: the surface has 0 boundary loops, the recorded one has 2; open "
-                        "the same caps");
+                        "replay: the surface has 0 boundary loops, the recorded one has 2: "
+                        "cap_x_low, cap_x_high; open the same caps (--open, --open-at, "
+                        "--open-facing)");
     Member renamed = make_member("seal", {}, 0.0, true);
     renamed.boundary_names[0] = "elsewhere";
     REQUIRE_THROWS_WITH(
