@@ -38,9 +38,10 @@ struct SolveRow {
 };
 
 /// Handle and tunnel loops, and the decomposition into pants (which looks for loops first), of a
-/// part of genus 5 on one thread.
+/// part on one thread.
 struct CuttingRow {
     std::string part;
+    int genus = 0;
     int n_triangles = 0;
     double loops_seconds = 0.0;
     double pants_seconds = 0.0;

@@ -35,19 +35,26 @@ void add_deck_options(CLI::App* sub, SolveOptions& options) {
     sub->add_option("deck", options.deck, "the deck (TOML)")->required();
     sub->add_option("--set", options.overrides,
                     "change a value of the deck: section.key=value (lists by index: "
-                    "pressure.0.value=5)");
+                    "pressure.0.value=5)")
+        ->allow_extra_args(false);
 }
 
 /// What is told about a surface besides its name.
 template <typename Options>
 void add_surface_options(CLI::App* sub, Options& options) {
     sub->add_option("--set", options.overrides,
-                    "a dimension of the part: NAME=VALUE (of a deck section.key=value)");
+                    "a dimension of the part: NAME=VALUE (of a deck section.key=value)")
+        ->allow_extra_args(false);
     sub->add_option("--edge-length", options.edge_length, "of the part's triangles");
-    sub->add_flag("--fix", options.fix,
-                  "also weld near points, remove flat triangles, part what touches at a vertex");
+    sub->add_flag(
+        "--fix", options.fix,
+        "also weld points up to 1e-9 of the diagonal apart, remove triangles flatter than "
+        "1e-9, part what touches at a vertex");
     sub->add_flag("--fill-holes", options.fill_holes, "close the surface at every boundary loop");
-    sub->add_option("--shell", options.shell, "take one shell of several, counted from 0");
+    sub->add_option(
+        "--shell", options.shell,
+        "take one shell of several with its cavities, counted from 0; the wall of a cavity: what "
+        "lies inside it");
 }
 
 /// A word that is no command gets a message of its own: CLI11's names no alternatives.
@@ -117,13 +124,19 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
     sub->add_option("--open", mesh->open,
-                    "take these plane faces of a part off (caps: all that are made for it)");
-    sub->add_option("--open-at", mesh->open_at, "take off the plane face at X,Y,Z");
+                    "take this plane face of a part off (caps: all that are made for it)")
+        ->allow_extra_args(false);
+    sub->add_option("--open-at", mesh->open_at, "take off the plane face at X,Y,Z")
+        ->allow_extra_args(false);
     sub->add_option("--open-facing", mesh->open_facing,
-                    "take off the plane faces whose outward normal is X,Y,Z");
+                    "take off the plane faces whose outward normal is X,Y,Z")
+        ->allow_extra_args(false);
     sub->add_option("--cycle", mesh->cycle_weights,
-                    "what makes a cut short: length=1, symmetry=, curvature=, sharp=");
-    sub->add_option("--merge", mesh->merge_weights, "which cut comes first: the same terms");
+                    "what makes a cut short: length=1, symmetry=, curvature=, sharp=; once for "
+                    "each term")
+        ->allow_extra_args(false);
+    sub->add_option("--merge", mesh->merge_weights, "which cut comes first: the same terms")
+        ->allow_extra_args(false);
     sub->add_option("--most-boundaries", mesh->most_boundaries,
                     "put pants with short tubes between them together: patches of up to 3 "
                     "(default) to 6 boundary loops");

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <csignal>
+#include <filesystem>
 #include <new>
 
 #include "drivers/command_line.h"
@@ -33,6 +34,9 @@ int run_guarded(const drivers::Command& command) {
         return report(error.what(), drivers::ExitCode::run_failed, json);
     } catch (const Error& error) {
         return report(error.what(), drivers::ExitCode::bad_input, json);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report(fmt::format("{}: {}", error.path1().string(), error.code().message()),
+                      drivers::ExitCode::bad_input, json);
     } catch (const std::bad_alloc&) {
         return report("out of memory; take fewer elements or a lower degree",
                       drivers::ExitCode::run_failed, json);

@@ -116,6 +116,52 @@ std::vector<io::SurfaceArray> curvature_arrays(const SurfaceMesh& mesh) {
             {"minimum_direction", direction}};
 }
 
+// Mean curvature at the vertices, positive where the surface is convex.
+VectorX mean_curvature(const SurfaceMesh& mesh) {
+    VectorX mean(static_cast<Eigen::Index>(mesh.n_vertices()));
+    const auto principal = principal_curvatures(mesh);
+    for (Eigen::Index v = 0; v < mean.size(); ++v) {
+        mean[v] = 0.5 * (principal[v].minimum + principal[v].maximum);
+    }
+    return mean;
+}
+
+// Between the values that a fiftieth is below and above: those of sharp edges grow with the mesh.
+std::array<double, 2> shown_range(const VectorX& values) {
+    std::vector<double> sorted(values.begin(), values.end());
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t tail = sorted.size() / 50;
+    return {sorted[tail], sorted[sorted.size() - 1 - tail]};
+}
+
+io::CurvePiece make_curve(const io::SurfaceLine& line) {
+    MatrixX points(static_cast<Eigen::Index>(line.points.size()), 3);
+    for (std::size_t k = 0; k < line.points.size(); ++k) {
+        points.row(static_cast<Eigen::Index>(k)) = line.points[k].transpose();
+    }
+    return {.points = std::move(points),
+            .is_closed = line.is_closed,
+            .color = color_of_kind(line.kind),
+            .width = line.kind == feature_kind ? 2.2 : 5.0};
+}
+
+// The surface coloured by its mean curvature, with its sharp curves.
+void show_curvature(const SurfaceMesh& mesh, const std::vector<int>& used, io::Scene& scene) {
+    const VectorX mean = mean_curvature(mesh);
+    scene.range = shown_range(mean);
+    scene.legend = "mean curvature, 1 / length";
+    VectorX& values = scene.surfaces.back().values;
+    values.resize(static_cast<Eigen::Index>(used.size()));
+    for (std::size_t v = 0; v < used.size(); ++v) {
+        values[static_cast<Eigen::Index>(v)] = mean[used[v]];
+    }
+    SurfaceMesh tagged = mesh;
+    for (const FeatureCurve& curve : detect_features(tagged).curves) {
+        scene.curves.push_back(
+            make_curve(make_line(mesh, curve.vertices, curve.is_closed, feature_kind, 0)));
+    }
+}
+
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
                      const std::vector<io::SurfaceLine>& lines) {
     const SurfaceMesh& mesh = stages.mesh;
@@ -150,17 +196,9 @@ io::Scene make_scene(const MeshStages& stages, MeshStage stage,
         }
         if (n_parts > 1) piece.color = io::part_color(p);
         scene.surfaces.push_back(std::move(piece));
+        if (stage == MeshStage::surface) show_curvature(mesh, used, scene);
     }
-    for (const io::SurfaceLine& line : lines) {
-        MatrixX points(static_cast<Eigen::Index>(line.points.size()), 3);
-        for (std::size_t k = 0; k < line.points.size(); ++k) {
-            points.row(static_cast<Eigen::Index>(k)) = line.points[k].transpose();
-        }
-        scene.curves.push_back({.points = std::move(points),
-                                .is_closed = line.is_closed,
-                                .color = color_of_kind(line.kind),
-                                .width = line.kind == feature_kind ? 2.2 : 5.0});
-    }
+    for (const io::SurfaceLine& line : lines) scene.curves.push_back(make_curve(line));
     scene.title = to_string(stage);
     return scene;
 }
@@ -200,11 +238,11 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     }
     if (last < MeshStage::loops) return stages;
     options.only_handles = last == MeshStage::loops;
-    if (deck.like.empty()) {
-        stages.pants = decompose_into_pants(stages.mesh, options);
+    if (surface.record) {
+        stages.pants =
+            replay_pants(stages.mesh, *surface.record, surface.boundary_names, surface.landmarks);
     } else {
-        stages.pants = replay_pants(stages.mesh, io::read_pants_record(deck.like),
-                                    surface.boundary_names, surface.landmarks);
+        stages.pants = decompose_into_pants(stages.mesh, options);
     }
     if (last == MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);

@@ -9,6 +9,7 @@
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "io/did_you_mean.h"
+#include "io/pants_file.h"
 #include "meshing/parts/part_landmarks.h"
 #include "meshing/surface/caps.h"
 #include "meshing/topology/invariants.h"
@@ -27,38 +28,44 @@ using namespace meshing;
 }
 
 // The faces of a part by their names: all its caps, or those that are asked for.
-void add_named_caps(const io::MeshDeck& deck, const PartSurface& part, const SurfaceMesh& mesh,
-                    std::vector<Cap>& caps) {
+void add_named_caps(const io::MeshDeck& deck, const io::CapSelection& open, const PartSurface& part,
+                    const SurfaceMesh& mesh, std::vector<Cap>& caps) {
     std::vector<std::string> names;
     for (const PartFace& face : part.faces) names.push_back(face.name);
-    for (const std::string& name : deck.open.names) {
+    for (const std::string& name : open.names) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
             unknown_name("face", deck.part, name, names);
         }
     }
     bool has_caps = false;
     for (std::size_t f = 0; f < part.faces.size(); ++f) {
-        const auto& wanted = deck.open.names;
+        const auto& wanted = open.names;
         const bool is_named = std::find(wanted.begin(), wanted.end(), names[f]) != wanted.end();
         has_caps = has_caps || part.faces[f].is_cap;
-        if (!is_named && !(deck.open.all && part.faces[f].is_cap)) continue;
+        if (!is_named && !(open.all && part.faces[f].is_cap)) continue;
         const auto first = std::find(part.face_of_triangle.begin(), part.face_of_triangle.end(),
                                      static_cast<int>(f));
         const FaceHandle face(static_cast<int>(first - part.face_of_triangle.begin()));
         caps.push_back({names[f], mesh.data(face).region});
     }
-    if (deck.open.all && !has_caps) {
-        throw InputError("mesh: the part '{}' has no caps to open; name plane faces of {}",
-                         deck.part, io::quoted_list(names));
+    if (open.all && !has_caps) {
+        std::vector<std::string> plane;
+        for (const PartFace& face : part.faces) {
+            if (face.kind == PartFaceKind::plane) plane.push_back(face.name);
+        }
+        throw InputError("mesh: the part '{}' has no caps to open{}", deck.part,
+                         plane.empty() ? ", nor plane faces"
+                                       : "; name plane faces of " + io::quoted_list(plane));
     }
 }
 
-std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartSurface>& part,
-                             const SurfaceMesh& mesh, const Features& features) {
+std::vector<Cap> select_caps(const io::MeshDeck& deck, const io::CapSelection& open,
+                             const std::optional<PartSurface>& part, const SurfaceMesh& mesh,
+                             const Features& features) {
     std::vector<Cap> caps;
     if (part) {
-        add_named_caps(deck, *part, mesh, caps);
-    } else if (deck.open.all || !deck.open.names.empty()) {
+        add_named_caps(deck, open, *part, mesh, caps);
+    } else if (open.all || !open.names.empty()) {
         throw InputError(
             "mesh: faces of a file have no names to open them by; give points on them (open_at, "
             "--open-at) or their normals (open_facing, --open-facing)");
@@ -68,12 +75,12 @@ std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartS
                                           [&](const Cap& cap) { return cap.region == region; });
         if (!is_known) caps.push_back({name, region});
     };
-    for (std::size_t k = 0; k < deck.open.points.size(); ++k) {
-        add(region_near(mesh, deck.open.points[k]), fmt::format("at_{}", k + 1));
+    for (std::size_t k = 0; k < open.points.size(); ++k) {
+        add(region_near(mesh, open.points[k]), fmt::format("at_{}", k + 1));
     }
     constexpr double degree = std::numbers::pi / 180.0;
-    for (std::size_t k = 0; k < deck.open.normals.size(); ++k) {
-        const Vector3& normal = deck.open.normals[k];
+    for (std::size_t k = 0; k < open.normals.size(); ++k) {
+        const Vector3& normal = open.normals[k];
         const auto regions = regions_facing(features, normal, degree);
         if (regions.empty()) {
             throw InputError(
@@ -88,6 +95,16 @@ std::vector<Cap> select_caps(const io::MeshDeck& deck, const std::optional<PartS
     return caps;
 }
 
+// What a deck opens: what it says, or what was open on the member that it is cut like.
+io::CapSelection caps_to_open(const io::MeshDeck& deck, const std::optional<PantsRecord>& record) {
+    io::CapSelection open = deck.open;
+    if (!record || deck.part.empty() || !open.is_empty()) return open;
+    for (const auto& curve : record->curves) {
+        if (curve.kind == PantsCurveKind::boundary) open.names.push_back(curve.name);
+    }
+    return open;
+}
+
 }  // namespace
 
 PreparedSurface prepare_surface(const io::MeshDeck& deck,
@@ -99,23 +116,25 @@ PreparedSurface prepare_surface(const io::MeshDeck& deck,
             deck.part);
     }
     const std::string source = deck.part.empty() ? deck.surface.string() : deck.part;
-    const io::DescribedSurface described =
-        load_surface("mesh", {.surface = source,
-                              .overrides = {},
-                              .parameters = deck.parameters,
-                              .edge_length = deck.edge_length,
-                              .fix = deck.fix,
-                              .fill_holes = deck.fill_holes,
-                              .shell = deck.shell});
+    const io::DescribedSurface described = load_surface("mesh", {.surface = source,
+                                                                 .overrides = {},
+                                                                 .parameters = deck.parameters,
+                                                                 .edge_length = deck.edge_length,
+                                                                 .units = deck.units,
+                                                                 .fix = deck.fix,
+                                                                 .fill_holes = deck.fill_holes,
+                                                                 .shell = deck.shell});
     const std::optional<PartSurface>& part = described.part;
     PreparedSurface surface;
+    if (!deck.like.empty()) surface.record = io::read_pants_record(deck.like);
     surface.mesh = make_checked_mesh("mesh", described, problems_file);
     if (part) surface.landmarks = part_landmarks(*part);
     std::vector<Cap> caps;
     std::vector<int> cap_of_vertex(surface.mesh.n_vertices(), -1);
-    if (!deck.open.is_empty()) {
+    const io::CapSelection open = caps_to_open(deck, surface.record);
+    if (!open.is_empty()) {
         const Features features = detect_features(surface.mesh, deck.features);
-        caps = select_caps(deck, part, surface.mesh, features);
+        caps = select_caps(deck, open, part, surface.mesh, features);
         OpenedSurface opened = open_caps(surface.mesh, features, caps);
         surface.mesh = make_surface_mesh(opened.soup);
         cap_of_vertex = std::move(opened.cap_of_vertex);

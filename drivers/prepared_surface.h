@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,16 @@ struct PreparedSurface {
     std::vector<std::string> boundary_names;
     /// Of parts; files have none.
     meshing::Landmarks landmarks;
+    /// The deck's `like`.
+    std::optional<meshing::PantsRecord> record;
 };
 
-/// Reads or builds the surface that a deck names and opens the caps that it asks for.
+/// Reads or builds the surface that a deck names and opens the caps that it asks for; if it asks
+/// for none and is to be cut like another member, those of a part that were open there.
 ///
 /// @param problems_file  see make_checked_mesh
-/// @throws what load_surface, make_checked_mesh and open_caps throw; InputError for names of caps
+/// @throws what read_pants_record, load_surface, make_checked_mesh and open_caps throw; InputError
+/// for names of caps
 ///         that the part does not have
 [[nodiscard]] PreparedSurface prepare_surface(const io::MeshDeck& deck,
                                               const std::filesystem::path& problems_file);

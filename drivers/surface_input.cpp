@@ -8,6 +8,7 @@
 
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "io/did_you_mean.h"
 #include "io/surface_writer.h"
 #include "meshing/parts/part_surface.h"
 
@@ -39,7 +40,12 @@ void read_or_build(const std::string& command, const SurfaceInputOptions& option
     for (const std::string& setting : options.overrides) {
         parameters.insert(read_setting(command, setting, "--set"));
     }
-    surface.part = meshing::make_part_surface(options.surface, parameters, options.edge_length);
+    constexpr double millimetre = 1e-3;
+    const double unit = options.units.scale(io::dimensions::length) / millimetre;
+    for (auto& [name, value] : parameters) value *= unit;
+    surface.part =
+        meshing::make_part_surface(options.surface, parameters, unit * options.edge_length);
+    for (Vector3& point : surface.part->soup.points) point /= unit;
     io::SurfaceFile& file = surface.file;
     file.soup = surface.part->soup;
     file.format = "part";
@@ -48,9 +54,14 @@ void read_or_build(const std::string& command, const SurfaceInputOptions& option
 }
 
 /// What to do about a kind that is refused.
-std::string advice(FlawKind kind) {
+std::string advice(FlawKind kind, bool is_parted) {
     switch (kind) {
         case FlawKind::self_intersection:
+            if (is_parted) {
+                return "--fix gave parts that touch a vertex each, but they still lie in one "
+                       "place: move them apart, or join them along an edge, where the surface was "
+                       "made, or take one alone with --shell N";
+            }
             return "such must be resolved where the surface was made";
         case FlawKind::disjoint_shell:
             return "choose one with --shell N, numbered from 0 as 'couture info' lists components";
@@ -90,6 +101,19 @@ std::pair<std::string, double> read_setting(const std::string& command, const st
     throw InputError("{}: {} '{}' is no setting; write NAME=NUMBER", command, option, setting);
 }
 
+void require_file_or_part(const std::string& command, const std::string& name) {
+    const std::filesystem::path path(name);
+    if (path.has_extension() || path.has_parent_path() || is_part(name) ||
+        std::filesystem::exists(path)) {
+        return;
+    }
+    std::vector<std::string> names;
+    for (const meshing::PartInfo& part : meshing::part_surfaces()) names.push_back(part.name);
+    const std::string help = io::did_you_mean(name, names);
+    throw InputError("{}: there is no file and no part '{}'{} Parts are {}", command, name,
+                     help.empty() ? "." : help, io::quoted_list(names));
+}
+
 bool is_part_input(const std::string& name) {
     return is_part(name) && !std::filesystem::exists(name);
 }
@@ -99,6 +123,7 @@ bool is_surface_input(const std::string& name) {
 }
 
 io::DescribedSurface load_surface(const std::string& command, const SurfaceInputOptions& options) {
+    require_file_or_part(command, options.surface);
     io::DescribedSurface surface;
     surface.name = options.surface;
     read_or_build(command, options, surface);
@@ -116,7 +141,9 @@ io::DescribedSurface load_surface(const std::string& command, const SurfaceInput
         turned.clear();
     }
     if (options.shell) {
-        surface.soup = meshing::select_shell(surface.soup, *options.shell);
+        meshing::SelectedShell selected = meshing::select_shell(surface.soup, *options.shell);
+        surface.soup = std::move(selected.soup);
+        if (selected.was_cavity) surface.former_cavity = *options.shell;
         turned.clear();
     }
     surface.n_shells_turned = meshing::orient_outwards(surface.soup, turned);
@@ -133,7 +160,9 @@ meshing::SurfaceMesh make_checked_mesh(const std::string& command,
             fmt::format("{}: {} triangles ran against their neighbours; they are turned round",
                         command, surface.repair.n_turned));
     }
-    if (surface.n_shells_turned > 0) {
+    if (surface.former_cavity) {
+        log::info(fmt::format("{}: {}", command, io::describe_former_cavity(surface)));
+    } else if (surface.n_shells_turned > 0) {
         log::warn(fmt::format("{}: {} of the surface {} inside out; {} turned round", command,
                               surface.n_shells_turned == 1
                                   ? "a shell"
@@ -141,6 +170,7 @@ meshing::SurfaceMesh make_checked_mesh(const std::string& command,
                               surface.n_shells_turned == 1 ? "is" : "are",
                               surface.n_shells_turned == 1 ? "it is" : "they are"));
     }
+    const bool is_parted = surface.fix && surface.fix->n_split_vertices > 0;
     std::string text;
     FlawKind first = FlawKind::none;
     for (const FlawKind kind : refused) {
@@ -148,13 +178,14 @@ meshing::SurfaceMesh make_checked_mesh(const std::string& command,
         if (flaw == nullptr) continue;
         if (first == FlawKind::none) first = kind;
         text += fmt::format("\n  {}{} at {}; {}", to_string(kind), times(check.count(kind)),
-                            flaw->text, advice(kind));
+                            flaw->text, advice(kind, is_parted));
     }
     if (first != FlawKind::none) {
-        write_problems(problems_file, surface);
-        const std::string message =
-            fmt::format("{}: {} can't be meshed:{}\n  all places are marked in {}", command,
-                        surface.name, text, problems_file.string());
+        std::string message = fmt::format("{}: {} can't be meshed:{}", command, surface.name, text);
+        if (!problems_file.empty()) {
+            write_problems(problems_file, surface);
+            message += fmt::format("\n  all places are marked in {}", problems_file.string());
+        }
         if (first == FlawKind::self_intersection) throw GeometryError("{}", message);
         throw TopologyError("{}", message);
     }

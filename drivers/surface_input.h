@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/surface_info.h"
+#include "io/units.h"
 #include "meshing/surface/surface_mesh.h"
 
 namespace couture::drivers {
@@ -18,10 +19,12 @@ struct SurfaceInputOptions {
     std::string surface;
     /// Dimensions of a part: NAME=VALUE.
     std::vector<std::string> overrides;
-    /// The same as numbers.
+    /// The same as numbers, in `units`.
     std::map<std::string, double> parameters;
-    /// Edge length of a part's triangles; 0: its default.
+    /// Edge length of a part's triangles, in `units`; 0: its default.
     double edge_length = 0.0;
+    /// Of a part's points; parts are made in mm.
+    io::UnitSystem units = io::UnitSystem();
     /// Repairs that change the surface (meshing/surface/fix_surface.h).
     bool fix = false;
     /// Closes every boundary loop.
@@ -43,6 +46,10 @@ struct SurfaceInputOptions {
 /// Whether a name is a surface file by its ending, or that of a part and no file's.
 [[nodiscard]] bool is_surface_input(const std::string& name);
 
+/// @throws InputError  if a name is that of no file and no part, and has no ending: names the
+///                     nearest part and lists all
+void require_file_or_part(const std::string& command, const std::string& name);
+
 /// Reads or builds a surface, repairs what is safe, fixes what was asked for, turns shells outwards
 /// and checks. Nothing is printed.
 ///
@@ -56,7 +63,7 @@ struct SurfaceInputOptions {
 /// The mesh of a surface that can be meshed. Warns of triangles and shells that were turned, and of
 /// flat triangles; open boundaries are said, not refused: they are the part's.
 ///
-/// @param problems_file  written (see `write_problems`) if the surface is refused
+/// @param problems_file  written (see `write_problems`) if the surface is refused; empty: none is
 /// @throws TopologyError   for edges and vertices that are no manifold, surfaces that can't be
 ///                         oriented, several shells, too few triangles
 /// @throws GeometryError   for self-intersections; each with counts, the first places, the file

@@ -131,6 +131,10 @@ std::string read_text(const fs::path& path) {
     if (fs::is_directory(path)) {
         throw FileError("{}: is a folder, not a file", path.string());
     }
+    if (fs::exists(path) && !fs::is_regular_file(path)) {
+        throw FileError("{}: is a pipe or device, not a file; write it to a file first",
+                        path.string());
+    }
     std::ifstream file(path, std::ios::binary);
     if (!file) {
         throw FileError("{}: can't be read: {}", path.string(), std::strerror(errno));

@@ -184,6 +184,13 @@ MeshDeck parse_mesh_deck(const std::string& text, const fs::path& path,
                          const std::vector<std::string>& overrides) {
     const std::string name = path.filename().string();
     TomlNode document = parse_toml(text, name);
+    for (const char* key : {"material", "discretization", "fixed", "solver", "output"}) {
+        if (document.find(key) == nullptr || document.find("meshing") != nullptr) continue;
+        throw InputError(
+            "{}: has a section [{}] and none [meshing]: a deck for 'couture solve', not for "
+            "'couture mesh'",
+            name, key);
+    }
     MeshDeck deck;
     deck.path = path;
     deck.text = text;

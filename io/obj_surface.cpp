@@ -31,9 +31,35 @@ int obj_corner(const TextCursor& cursor, std::string_view word, const ObjFace& f
     return number > 0 ? number - 1 : face.n_points + number;
 }
 
+/// The text with the lines in one that end with a backslash and go on in the next; the line ends
+/// that this takes away stand behind, so that the numbers of further lines stay.
+std::string joined_lines(std::string_view text) {
+    std::string joined;
+    joined.reserve(text.size());
+    std::size_t n_taken = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\\') {
+            const std::size_t end = text.find_first_not_of(" \t\r", i + 1);
+            if (end != std::string_view::npos && text[end] == '\n') {
+                joined += ' ';
+                ++n_taken;
+                i = end;
+                continue;
+            }
+        }
+        joined += text[i];
+        if (text[i] != '\n') continue;
+        joined.append(n_taken, '\n');
+        n_taken = 0;
+    }
+    return joined;
+}
+
 }  // namespace
 
-RawSurface read_obj(const std::string& file, std::string_view text) {
+RawSurface read_obj(const std::string& file, std::string_view bytes) {
+    const std::string joined = joined_lines(bytes);
+    std::string_view text = joined;
     RawSurface surface;
     std::vector<ObjFace> faces;
     int line = 0;

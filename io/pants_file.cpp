@@ -1,6 +1,10 @@
 #include "io/pants_file.h"
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
@@ -13,7 +17,9 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 using namespace meshing;
 
-constexpr const char* format_name = "couture pants 1";
+constexpr const char* format_name = "couture pants 2";
+constexpr const char* way_out =
+    "take the NAME_pants.json that 'couture mesh' wrote, or write it again by meshing that member";
 
 ordered_json to_json(const Vector3& x) { return {x.x(), x.y(), x.z()}; }
 
@@ -23,59 +29,146 @@ ordered_json to_json(const std::vector<Vector3>& points) {
     return list;
 }
 
-Vector3 read_vector(const json& node) {
-    const auto values = node.get<std::vector<double>>();
-    if (values.size() != 3) throw InputError("a point has {} numbers, not 3", values.size());
-    Vector3 x(values[0], values[1], values[2]);
-    if (!x.allFinite()) throw InputError("a point is not finite");
-    return x;
-}
+// A value of the file with the keys that lead to it, for messages.
+class Node {
+  public:
+    Node(const json& value, std::string path) : value_(value), path_(std::move(path)) {}
 
-std::vector<Vector3> read_vectors(const json& node) {
-    std::vector<Vector3> points;
-    for (const json& item : node) points.push_back(read_vector(item));
-    return points;
-}
+    [[nodiscard]] Node operator[](const char* key) const {
+        require(value_.is_object(), "an object");
+        const auto entry = value_.find(key);
+        if (entry == value_.end()) throw InputError("{} is missing", within(key));
+        return {*entry, within(key)};
+    }
+    [[nodiscard]] std::vector<Node> items() const {
+        require(value_.is_array(), "a list");
+        std::vector<Node> nodes;
+        for (std::size_t i = 0; i < value_.size(); ++i) {
+            nodes.emplace_back(value_[i], fmt::format("{}[{}]", path_, i));
+        }
+        return nodes;
+    }
+    [[nodiscard]] std::vector<std::pair<std::string, Node>> entries() const {
+        require(value_.is_object(), "an object");
+        std::vector<std::pair<std::string, Node>> nodes;
+        for (const auto& [name, value] : value_.items()) {
+            nodes.emplace_back(name, Node(value, within(name)));
+        }
+        return nodes;
+    }
+    [[nodiscard]] std::string text() const {
+        require(value_.is_string(), "a text");
+        return value_.get<std::string>();
+    }
+    [[nodiscard]] bool flag() const {
+        require(value_.is_boolean(), "true or false");
+        return value_.get<bool>();
+    }
+    // @param n  the number lies below it
+    [[nodiscard]] int count_below(int n) const {
+        constexpr const char* what = "an integer, 0 or more";
+        require(value_.is_number_unsigned(), what);
+        const auto number = value_.get<std::uint64_t>();
+        if (number >= static_cast<std::uint64_t>(n)) {
+            throw InputError("{} = {}; it must be below {}", path_, number, n);
+        }
+        return static_cast<int>(number);
+    }
+    [[nodiscard]] Vector3 vector() const {
+        const auto numbers = items();
+        if (numbers.size() != 3)
+            throw InputError("{} has {} numbers, not 3", path_, numbers.size());
+        Vector3 x;
+        for (int i = 0; i < 3; ++i) {
+            numbers[i].require(numbers[i].value_.is_number(), "a number");
+            x[i] = numbers[i].value_.get<double>();
+        }
+        if (!x.allFinite()) throw InputError("{} is not finite", path_);
+        return x;
+    }
+    [[nodiscard]] std::vector<Vector3> vectors() const {
+        std::vector<Vector3> points;
+        for (const Node& item : items()) points.push_back(item.vector());
+        return points;
+    }
+    [[nodiscard]] const std::string& path() const { return path_; }
 
-PantsCurveKind read_kind(const std::string& name) {
+  private:
+    [[nodiscard]] std::string within(const std::string& key) const {
+        return path_.empty() ? key : path_ + "." + key;
+    }
+    void require(bool is_right, const char* what) const {
+        if (is_right) return;
+        throw InputError("{} is {}, expected {}", path_.empty() ? "the file" : path_,
+                         value_.type_name(), what);
+    }
+
+    const json& value_;
+    std::string path_;
+};
+
+PantsCurveKind read_kind(const Node& node) {
     for (const auto kind :
          {PantsCurveKind::boundary, PantsCurveKind::handle, PantsCurveKind::cycle}) {
-        if (name == to_string(kind)) return kind;
+        if (node.text() == to_string(kind)) return kind;
     }
-    throw InputError("'{}' is no kind of curve; there are boundary, handle, cycle", name);
+    throw InputError("{}: '{}' is no kind of curve; there are boundary, handle, cycle", node.path(),
+                     node.text());
+}
+
+void read_box(const Node& node, PantsRecord& record) {
+    const auto corners = node.vectors();
+    if (corners.size() != 2) throw InputError("box has {} corners, not 2", corners.size());
+    record.box_min = corners[0];
+    record.box_max = corners[1];
+    const Vector3 size = record.box_max - record.box_min;
+    if (!(size.minCoeff() >= 0.0) || !(size.maxCoeff() > 0.0)) {
+        throw InputError(
+            "box has size {:.6g} x {:.6g} x {:.6g}; none may be negative, nor all be 0", size.x(),
+            size.y(), size.z());
+    }
+}
+
+GuideLoop read_shape(const Node& node) {
+    GuideLoop shape{node["points"].vectors(), node["normals"].vectors()};
+    if (shape.points.size() < 3 || shape.normals.size() != shape.points.size()) {
+        throw InputError("{} has {} points and {} normals; it needs 3 points and as many normals",
+                         node.path(), shape.points.size(), shape.normals.size());
+    }
+    return shape;
 }
 
 PantsRecord from_json(const json& object) {
-    if (object.value("format", "") != format_name) {
-        throw InputError("'format' is '{}', expected '{}'", object.value("format", ""),
-                         format_name);
+    const Node top(object, "");
+    if (const std::string format = top["format"].text(); format != format_name) {
+        throw InputError("format is '{}', expected '{}'", format, format_name);
     }
+    constexpr int largest_genus = 1'000'000;
     PantsRecord record;
-    record.box_min = read_vector(object.at("box").at(0));
-    record.box_max = read_vector(object.at("box").at(1));
-    record.genus = object.at("genus").get<int>();
-    for (const auto& [name, x] : object.at("corners").items()) {
-        record.landmarks.corners[name] = read_vector(x);
+    read_box(top["box"], record);
+    for (const Node& shell : top["shells"].items()) {
+        record.shells.push_back({.genus = shell["genus"].count_below(largest_genus),
+                                 .center = shell["center"].vector()});
     }
-    for (const auto& [name, curve] : object.at("feature_curves").items()) {
-        record.landmarks.curves[name] = read_vectors(curve.at("points"));
-        if (curve.at("closed").get<bool>()) record.landmarks.closed_curves.insert(name);
+    for (const auto& [name, x] : top["corners"].entries()) {
+        record.landmarks.corners[name] = x.vector();
     }
-    for (const json& curve : object.at("curves")) {
-        record.curves.push_back(
-            {.kind = read_kind(curve.at("kind").get<std::string>()),
-             .name = curve.at("name").get<std::string>(),
-             .shape = {read_vectors(curve.at("points")), read_vectors(curve.at("normals"))}});
+    for (const auto& [name, curve] : top["feature_curves"].entries()) {
+        record.landmarks.curves[name] = curve["points"].vectors();
+        if (curve["closed"].flag()) record.landmarks.closed_curves.insert(name);
+    }
+    for (const Node& curve : top["curves"].items()) {
+        record.curves.push_back({.kind = read_kind(curve["kind"]),
+                                 .name = curve["name"].text(),
+                                 .shape = read_shape(curve)});
     }
     const int n_curves = static_cast<int>(record.curves.size());
-    for (const json& patch : object.at("patches")) {
+    for (const Node& patch : top["patches"].items()) {
+        record.shell_of_patch.push_back(
+            patch["shell"].count_below(static_cast<int>(record.shells.size())));
         auto& sides = record.patches.emplace_back();
-        for (const json& side : patch) {
-            sides.push_back({side.at("curve").get<int>(), side.at("left").get<bool>()});
-            if (sides.back().curve < 0 || sides.back().curve >= n_curves) {
-                throw InputError("a patch names curve {}; there are {}", sides.back().curve,
-                                 n_curves);
-            }
+        for (const Node& side : patch["boundary"].items()) {
+            sides.push_back({side["curve"].count_below(n_curves), side["left"].flag()});
         }
     }
     return record;
@@ -87,8 +180,11 @@ void write_pants_record(const std::filesystem::path& path, const PantsRecord& re
                         const std::string& provenance) {
     ordered_json object = {{"format", format_name},
                            {"provenance", provenance},
-                           {"box", {to_json(record.box_min), to_json(record.box_max)}},
-                           {"genus", record.genus}};
+                           {"box", {to_json(record.box_min), to_json(record.box_max)}}};
+    auto& shells = object["shells"] = ordered_json::array();
+    for (const auto& shell : record.shells) {
+        shells.push_back({{"genus", shell.genus}, {"center", to_json(shell.center)}});
+    }
     auto& corners = object["corners"] = ordered_json::object();
     for (const auto& [name, x] : record.landmarks.corners) corners[name] = to_json(x);
     auto& features = object["feature_curves"] = ordered_json::object();
@@ -104,12 +200,12 @@ void write_pants_record(const std::filesystem::path& path, const PantsRecord& re
                           {"normals", to_json(curve.shape.normals)}});
     }
     auto& patches = object["patches"] = ordered_json::array();
-    for (const auto& patch : record.patches) {
+    for (std::size_t p = 0; p < record.patches.size(); ++p) {
         auto sides = ordered_json::array();
-        for (const CurveSide& side : patch) {
+        for (const CurveSide& side : record.patches[p]) {
             sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
         }
-        patches.push_back(std::move(sides));
+        patches.push_back({{"shell", record.shell_of_patch[p]}, {"boundary", std::move(sides)}});
     }
     write_text(path, object.dump(1) + "\n");
 }
@@ -117,11 +213,10 @@ void write_pants_record(const std::filesystem::path& path, const PantsRecord& re
 PantsRecord read_pants_record(const std::filesystem::path& path) {
     try {
         return from_json(json::parse(read_text(path)));
-    } catch (const json::exception& error) {
-        throw FileError("{}: no record of a decomposition into pants: {}", path.string(),
-                        error.what());
+    } catch (const json::parse_error& error) {
+        throw FileError("{}: no JSON from byte {} on; {}", path.string(), error.byte, way_out);
     } catch (const InputError& error) {
-        throw FileError("{}: {}", path.string(), error.what());
+        throw FileError("{}: {}; {}", path.string(), error.what(), way_out);
     }
 }
 

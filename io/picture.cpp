@@ -1,32 +1,14 @@
 #include "io/picture.h"
 
-#include <vtkActor.h>
-#include <vtkActor2D.h>
 #include <vtkCamera.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkCoordinate.h>
-#include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkImageData.h>
 #include <vtkLightKit.h>
-#include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
-#include <vtkPolyDataMapper2D.h>
-#include <vtkPolyDataNormals.h>
-#include <vtkProperty.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
-#include <vtkTextActor.h>
-#include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
 #include <Eigen/Geometry>
@@ -35,10 +17,13 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <numbers>
+#include <limits>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
+#include "io/picture_check.h"
+#include "io/picture_shapes.h"
+#include "io/picture_text.h"
 #include "io/virtual_display.h"
 
 namespace couture::io {
@@ -47,79 +32,14 @@ namespace {
 
 /// Everything is drawn this much larger and averaged down: smooth lines on any driver.
 constexpr int oversampling = 2;
-constexpr int n_colors = 256;
-constexpr double crease_angle_degrees = 40.0;
-/// Heights of text at 900 pixels of picture height.
+/// Height of the title at 900 pixels of picture height.
 constexpr double title_size = 26.0;
-constexpr double text_size = 19.0;
-/// Part of the width that the colour bar takes.
-constexpr double legend_width = 0.16;
 /// Room around the shape, relative to it.
 constexpr double margin = 1.06;
-constexpr Color text_color{0.13, 0.15, 0.18};
-constexpr Color missing_color{0.6, 0.6, 0.6};
 
 using Range = std::array<double, 2>;
 /// Values that differ by less, relative to their size, are shown as one.
 constexpr double uniform = 1e-6;
-
-void check_piece(const char* kind, std::size_t i, const MatrixX& points) {
-    if (points.rows() == 0 || points.cols() != 3 || !points.allFinite()) {
-        throw InputError(
-            "render_png: the points of {} {} are {} x {}; expected n x 3 finite coordinates", kind,
-            i, points.rows(), points.cols());
-    }
-}
-
-void check_input(const Scene& scene) {
-    if (scene.surfaces.empty() && scene.curves.empty()) {
-        throw InputError("render_png: the scene has no surface and no curve; nothing to show");
-    }
-    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        const SurfacePiece& piece = scene.surfaces[i];
-        check_piece("surface", i, piece.vertices);
-        const Eigen::Index n = piece.vertices.rows();
-        if (piece.triangles.size() > 0 &&
-            (piece.triangles.cols() != 3 || piece.triangles.minCoeff() < 0 ||
-             piece.triangles.maxCoeff() >= n)) {
-            throw InputError(
-                "render_png: the triangles of surface {} are m x {} with vertices {} to {}; "
-                "expected m x 3 and 0 to {}",
-                i, piece.triangles.cols(), piece.triangles.minCoeff(), piece.triangles.maxCoeff(),
-                n - 1);
-        }
-        if (piece.values.size() != 0 && piece.values.size() != n) {
-            throw InputError("render_png: surface {} has {} values for {} vertices", i,
-                             piece.values.size(), n);
-        }
-    }
-    for (std::size_t i = 0; i < scene.curves.size(); ++i) {
-        check_piece("curve", i, scene.curves[i].points);
-    }
-    if (!(scene.view_direction.cross(scene.up).norm() >
-          1e-6 * scene.view_direction.norm() * scene.up.norm())) {
-        throw InputError(
-            "render_png: view direction ({}, {}, {}) and up ({}, {}, {}) must be independent",
-            scene.view_direction[0], scene.view_direction[1], scene.view_direction[2], scene.up[0],
-            scene.up[1], scene.up[2]);
-    }
-    if (scene.frame && !(scene.frame->center.allFinite() && scene.frame->height > 0.0 &&
-                         std::isfinite(scene.frame->height))) {
-        throw InputError(
-            "render_png: the frame has its centre at ({}, {}) and is {} high; the centre must be "
-            "finite and the height positive",
-            scene.frame->center[0], scene.frame->center[1], scene.frame->height);
-    }
-    if (scene.text_scale && !(*scene.text_scale > 0.0 && *scene.text_scale < 100.0)) {
-        throw InputError("render_png: text_scale = {}; must be positive and below 100",
-                         *scene.text_scale);
-    }
-    constexpr int largest = 8192;
-    if (std::min(scene.width, scene.height) < 16 || std::max(scene.width, scene.height) > largest) {
-        throw InputError("render_png: size {} x {}; each must be from 16 to {} pixels", scene.width,
-                         scene.height, largest);
-    }
-}
 
 bool has_values(const Scene& scene) {
     return std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
@@ -165,201 +85,6 @@ Eigen::Matrix<double, 3, 2> view_box(const Scene& scene, const Matrix<3>& axes) 
         add(piece.points);
     }
     return box;
-}
-
-vtkSmartPointer<vtkPoints> make_points(const MatrixX& rows) {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(rows.rows());
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-        points->SetPoint(i, rows(i, 0), rows(i, 1), rows(i, 2));
-    }
-    return points;
-}
-
-vtkSmartPointer<vtkLookupTable> make_color_table(const Range& range) {
-    vtkNew<vtkLookupTable> table;
-    table->SetNumberOfTableValues(n_colors);
-    for (int i = 0; i < n_colors; ++i) {
-        const Color color = viridis(i / (n_colors - 1.0));
-        table->SetTableValue(i, color[0], color[1], color[2]);
-    }
-    table->SetNanColor(missing_color[0], missing_color[1], missing_color[2], 1.0);
-    // A constant field takes the colour of the middle.
-    const double half = range[0] == range[1] ? std::max(std::abs(range[0]), 1.0) : 0.0;
-    table->SetTableRange(range[0] - half, range[1] + half);
-    return table;
-}
-
-void add_surface(vtkRenderer& renderer, const SurfacePiece& piece, const Range& range) {
-    vtkNew<vtkPolyData> mesh;
-    mesh->SetPoints(make_points(piece.vertices));
-    vtkNew<vtkCellArray> triangles;
-    for (Eigen::Index i = 0; i < piece.triangles.rows(); ++i) {
-        const std::array<vtkIdType, 3> ids{piece.triangles(i, 0), piece.triangles(i, 1),
-                                           piece.triangles(i, 2)};
-        triangles->InsertNextCell(3, ids.data());
-    }
-    mesh->SetPolys(triangles);
-    if (piece.values.size() > 0) {
-        vtkNew<vtkDoubleArray> values;
-        values->SetNumberOfTuples(piece.values.size());
-        std::copy(piece.values.begin(), piece.values.end(), values->GetPointer(0));
-        mesh->GetPointData()->SetScalars(values);
-    }
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(mesh);
-    normals->SetFeatureAngle(crease_angle_degrees);
-    normals->ConsistencyOff();
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputConnection(normals->GetOutputPort());
-    mapper->SetScalarVisibility(piece.values.size() > 0);
-    mapper->SetLookupTable(make_color_table(range));
-    mapper->UseLookupTableScalarRangeOn();
-    mapper->InterpolateScalarsBeforeMappingOn();
-    // Lines lie on surfaces: these step back a little.
-    mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0);
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    vtkProperty& look = *actor->GetProperty();
-    look.SetColor(piece.color[0], piece.color[1], piece.color[2]);
-    look.SetOpacity(piece.opacity);
-    look.SetInterpolationToPhong();
-    look.SetAmbient(0.42);
-    look.SetDiffuse(0.62);
-    look.SetSpecular(0.10);
-    look.SetSpecularPower(25.0);
-    renderer.AddActor(actor);
-}
-
-void add_curve(vtkRenderer& renderer, const CurvePiece& piece, double scale) {
-    vtkNew<vtkPolyData> mesh;
-    mesh->SetPoints(make_points(piece.points));
-    vtkNew<vtkCellArray> lines;
-    const vtkIdType n = piece.points.rows();
-    lines->InsertNextCell(static_cast<int>(piece.is_closed ? n + 1 : n));
-    for (vtkIdType i = 0; i < (piece.is_closed ? n + 1 : n); ++i) {
-        lines->InsertCellPoint(i % n);
-    }
-    mesh->SetLines(lines);
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(mesh);
-    mapper->ScalarVisibilityOff();
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    vtkNew<vtkProperty> look;
-    look->SetColor(piece.color[0], piece.color[1], piece.color[2]);
-    look->SetLineWidth(static_cast<float>(piece.width * scale));
-    look->LightingOff();
-    actor->SetProperty(look);
-    renderer.AddActor(actor);
-}
-
-vtkSmartPointer<vtkTextActor> make_text(const std::string& text, double size) {
-    vtkNew<vtkTextActor> actor;
-    actor->SetInput(text.c_str());
-    actor->SetTextScaleModeToNone();
-    vtkTextProperty& look = *actor->GetTextProperty();
-    look.SetFontFamilyToArial();
-    look.SetLineSpacing(1.25);
-    look.SetFontSize(static_cast<int>(std::lround(size)));
-    look.SetColor(text_color[0], text_color[1], text_color[2]);
-    return actor;
-}
-
-void add_label(vtkRenderer& renderer, const Label& label, double size) {
-    const vtkSmartPointer<vtkTextActor> actor = make_text(label.text, size);
-    actor->GetPositionCoordinate()->SetCoordinateSystemToWorld();
-    actor->GetPositionCoordinate()->SetValue(label.position[0], label.position[1],
-                                             label.position[2]);
-    vtkTextProperty& look = *actor->GetTextProperty();
-    look.SetJustificationToCentered();
-    look.SetVerticalJustificationToCentered();
-    look.SetOrientation(label.angle * 180.0 / std::numbers::pi);
-    if (label.has_background) {
-        look.SetBackgroundColor(1.0, 1.0, 1.0);
-        look.SetBackgroundOpacity(1.0);
-    }
-    renderer.AddActor2D(actor);
-}
-
-/// A filled rectangle strip of `colors` from bottom to top, in pixels.
-void add_color_bar(vtkRenderer& renderer, double left, double bottom, double width, double height) {
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> quads;
-    vtkNew<vtkUnsignedCharArray> colors;
-    colors->SetNumberOfComponents(3);
-    for (int i = 0; i <= n_colors; ++i) {
-        const double y = bottom + height * i / n_colors;
-        points->InsertNextPoint(left, y, 0.0);
-        points->InsertNextPoint(left + width, y, 0.0);
-        if (i < n_colors) {
-            const std::array<vtkIdType, 4> ids{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
-            quads->InsertNextCell(4, ids.data());
-            const Color color = viridis(i / (n_colors - 1.0));
-            colors->InsertNextTuple3(255 * color[0], 255 * color[1], 255 * color[2]);
-        }
-    }
-    vtkNew<vtkPolyData> mesh;
-    mesh->SetPoints(points);
-    mesh->SetPolys(quads);
-    mesh->GetCellData()->SetScalars(colors);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(mesh);
-    vtkNew<vtkActor2D> actor;
-    actor->SetMapper(mapper);
-    renderer.AddActor2D(actor);
-}
-
-void add_tick(vtkRenderer& renderer, double left, double right, double y, double width) {
-    vtkNew<vtkPoints> points;
-    points->InsertNextPoint(left, y, 0.0);
-    points->InsertNextPoint(right, y, 0.0);
-    vtkNew<vtkCellArray> lines;
-    const std::array<vtkIdType, 2> ids{0, 1};
-    lines->InsertNextCell(2, ids.data());
-    vtkNew<vtkPolyData> mesh;
-    mesh->SetPoints(points);
-    mesh->SetLines(lines);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(mesh);
-    vtkNew<vtkActor2D> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(text_color[0], text_color[1], text_color[2]);
-    actor->GetProperty()->SetLineWidth(static_cast<float>(width));
-    renderer.AddActor2D(actor);
-}
-
-/// Puts text at pixel (x, y); vertically centred there.
-void add_text(vtkRenderer& renderer, const std::string& text, double size, double x, double y) {
-    const vtkSmartPointer<vtkTextActor> actor = make_text(text, size);
-    actor->GetTextProperty()->SetVerticalJustificationToCentered();
-    actor->SetPosition(x, y);
-    renderer.AddActor2D(actor);
-}
-
-/// `scale`: pixels per pixel of a picture 900 high.
-void add_legend(vtkRenderer& renderer, const Scene& scene, const Range& range, int width,
-                int height, double scale) {
-    const double left = (1.0 - legend_width) * width;
-    const double bottom = 0.2 * height;
-    const double bar_width = 24.0 * scale;
-    const double bar_height = 0.6 * height;
-    add_color_bar(renderer, left, bottom, bar_width, bar_height);
-    for (const double value : round_ticks(range[0], range[1])) {
-        const double t = range[0] == range[1] ? 0.5 : (value - range[0]) / (range[1] - range[0]);
-        const double y = bottom + t * bar_height;
-        add_tick(renderer, left + bar_width, left + bar_width + 6.0 * scale, y, 1.5 * scale);
-        add_text(renderer, fmt::format("{:.6g}", value), text_size * scale,
-                 left + bar_width + 12.0 * scale, y);
-    }
-    add_text(renderer, scene.legend, text_size * scale, left,
-             bottom + bar_height + 1.6 * text_size * scale);
-    if (range[0] != range[1]) {
-        add_text(renderer, fmt::format("max {:.4g}\nmin {:.4g}", range[1], range[0]),
-                 0.85 * text_size * scale, left, bottom - 2.0 * text_size * scale);
-    }
 }
 
 /// `look`: camera axes; shows the box [centre - half, centre + half] in height.
@@ -559,62 +284,6 @@ void paste(vtkImageData& picture, vtkImageData& canvas, int left, int bottom) {
 
 }  // namespace
 
-Color viridis(double t) {
-    constexpr std::array<std::array<int, 3>, 11> stops{{{68, 1, 84},
-                                                        {72, 36, 117},
-                                                        {65, 68, 135},
-                                                        {53, 95, 141},
-                                                        {42, 120, 142},
-                                                        {33, 145, 140},
-                                                        {34, 168, 132},
-                                                        {68, 191, 112},
-                                                        {122, 209, 81},
-                                                        {189, 223, 38},
-                                                        {253, 231, 37}}};
-    const double x = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
-    const std::size_t i = std::min(static_cast<std::size_t>(x), stops.size() - 2);
-    const double part = x - static_cast<double>(i);
-    Color color{};
-    for (int c = 0; c < 3; ++c) {
-        color[c] = ((1.0 - part) * stops[i][c] + part * stops[i + 1][c]) / 255.0;
-    }
-    return color;
-}
-
-Color part_color(int i) {
-    constexpr std::array<Color, 8> colors{{{0.62, 0.74, 0.85},
-                                           {0.94, 0.78, 0.58},
-                                           {0.67, 0.81, 0.64},
-                                           {0.86, 0.67, 0.68},
-                                           {0.76, 0.70, 0.85},
-                                           {0.93, 0.88, 0.62},
-                                           {0.62, 0.82, 0.80},
-                                           {0.80, 0.76, 0.71}}};
-    return colors[static_cast<std::size_t>(i) % colors.size()];
-}
-
-std::vector<double> round_ticks(double low, double high) {
-    if (!(high > low)) {
-        return {low};
-    }
-    constexpr double wanted = 6.0;
-    const double power = std::pow(10.0, std::floor(std::log10((high - low) / wanted)));
-    double step = 10.0 * power;
-    for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
-        if ((high - low) / (factor * power) <= wanted) {
-            step = factor * power;
-            break;
-        }
-    }
-    // Ends count although rounding may put them just outside.
-    const double slack = 1e-9 * (high - low) / step;
-    std::vector<double> ticks;
-    for (double i = std::ceil(low / step - slack); i <= high / step + slack; i += 1.0) {
-        ticks.push_back(i == 0.0 ? 0.0 : i * step);
-    }
-    return ticks;
-}
-
 std::optional<std::string> missing_for_pictures() {
     try {
         const VirtualDisplay display;
@@ -639,7 +308,7 @@ Vector2 label_size(const std::string& text) {
 }
 
 void render_png(const std::filesystem::path& path, const Scene& scene) {
-    check_input(scene);
+    check_scene(scene);
     const VirtualDisplay display;
     write_png(path, *draw(scene));
 }
@@ -648,7 +317,7 @@ void render_png(const std::filesystem::path& path, const std::vector<std::vector
     int width = 0;
     int height = 0;
     for (const std::vector<Scene>& row : rows) {
-        std::for_each(row.begin(), row.end(), check_input);
+        std::for_each(row.begin(), row.end(), check_scene);
         width = std::max(width, row_width(row));
         height += row_height(row);
     }
@@ -656,11 +325,6 @@ void render_png(const std::filesystem::path& path, const std::vector<std::vector
         throw InputError("render_png: {} rows without a scene; nothing to show", rows.size());
     }
     const VirtualDisplay display;
-    // The display ends with its last window: this one outlives those of the scenes.
-    vtkNew<vtkRenderWindow> first;
-    first->SetOffScreenRendering(1);
-    first->SetSize(1, 1);
-    first->Render();
     vtkNew<vtkImageData> canvas;
     canvas->SetDimensions(width, height, 1);
     canvas->AllocateScalars(VTK_UNSIGNED_CHAR, 3);

@@ -7,20 +7,9 @@
 #include <vector>
 
 #include "iga/core/types.h"
+#include "io/color_map.h"
 
 namespace couture::io {
-
-/// Red, green, blue in [0, 1].
-using Color = std::array<double, 3>;
-
-/// Viridis, which is perceptually uniform, at t in [0, 1]. Source: [SmithVanDerWalt15].
-[[nodiscard]] Color viridis(double t);
-/// Colours that tell parts apart; repeats after eight.
-[[nodiscard]] Color part_color(int i);
-
-/// Round numbers from `low` to `high`, between three and about seven of them; `low` alone if both
-/// are equal.
-[[nodiscard]] std::vector<double> round_ticks(double low, double high);
 
 /// Triangles, shaded smoothly up to creases of 40 degrees.
 struct SurfacePiece {

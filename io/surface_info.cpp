@@ -157,6 +157,12 @@ Json describe(const DescribedSurface& surface) {
                            {"hole_triangles", fix->n_hole_triangles},
                            {"open_holes", fix->n_open_holes}};
     }
+    if (surface.part) {
+        result["corners"] = Json::object();
+        for (const PartCorner& corner : surface.part->corners) {
+            result["corners"][corner.name] = to_array(surface.part->soup.points[corner.vertex]);
+        }
+    }
     result["changes"] = describe_changes(surface);
     result["problems"] = Json::array();
     for (const SurfaceFlaw& flaw : check.flaws) {
@@ -171,6 +177,12 @@ Json describe(const DescribedSurface& surface) {
 }
 
 }  // namespace
+
+std::string describe_former_cavity(const DescribedSurface& surface) {
+    return fmt::format(
+        "shell {} is the wall of a cavity; what lies inside it is taken as a body, turned outwards",
+        surface.former_cavity.value());
+}
 
 std::vector<std::string> describe_changes(const DescribedSurface& surface) {
     std::vector<std::string> lines;
@@ -195,7 +207,11 @@ std::vector<std::string> describe_changes(const DescribedSurface& surface) {
     add(file.n_unused + repair.n_unused, "point", "points", "of no triangle dropped");
     add(repair.n_turned, "triangle", "triangles", "turned to run as their neighbours",
         repair.turned);
-    add(surface.n_shells_turned, "shell", "shells", "turned outwards");
+    if (surface.former_cavity) {
+        lines.push_back(describe_former_cavity(surface));
+    } else {
+        add(surface.n_shells_turned, "shell", "shells", "turned outwards");
+    }
     if (!surface.fix) return lines;
     const FixReport& fix = *surface.fix;
     if (fix.n_welded > 0) {
@@ -260,6 +276,12 @@ std::string surface_info_text(const DescribedSurface& surface) {
         text += fmt::format("solid: {}, Betti numbers {} {} {}\n",
                             count(solid->betti[2], "cavity", "cavities"), solid->betti[0],
                             solid->betti[1], solid->betti[2]);
+    }
+    if (surface.part) {
+        for (const PartCorner& corner : surface.part->corners) {
+            text += fmt::format("corner {}: {}\n", corner.name,
+                                place(surface.part->soup.points[corner.vertex]));
+        }
     }
     for (const std::string& line : describe_changes(surface)) {
         text += fmt::format("note: {}\n", line);

@@ -45,6 +45,28 @@ RawSurface read_raw(const std::filesystem::path& path, std::string_view bytes,
     return read_vtp(path, bytes);
 }
 
+/// What is left of a text behind the mark that some editors put before UTF-8. A binary STL may
+/// begin with anything.
+std::string_view without_mark(std::string_view bytes, const std::string& ending) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (!bytes.starts_with(mark)) return bytes;
+    const std::string_view text = bytes.substr(mark.size());
+    return ending != ".stl" || text.starts_with("solid") ? text : bytes;
+}
+
+/// Volumes of larger coordinates overflow.
+void check_size(const std::string& file, const std::vector<Vector3>& points) {
+    constexpr double largest = 1e100;
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const double size = points[v].cwiseAbs().maxCoeff();
+        if (size <= largest) continue;
+        throw FileError(
+            "{}: a coordinate of point {} is as large as {:.3g}; areas and volumes overflow beyond "
+            "{:.0e}: is it a damaged number, or a unit too small?",
+            file, v, size, largest);
+    }
+}
+
 /// Merges equal points and splits polygons.
 void make_triangles(const std::string& file, RawSurface raw, SurfaceFile& result) {
     result.n_points_read = static_cast<int>(raw.points.size());
@@ -111,7 +133,9 @@ SurfaceFile read_surface_file(const std::filesystem::path& path) {
                         bytes.size(), max_int);
     }
     SurfaceFile result;
-    make_triangles(file, read_raw(path, bytes, result.format), result);
+    RawSurface raw = read_raw(path, without_mark(bytes, ending_of(path)), result.format);
+    check_size(file, raw.points);
+    make_triangles(file, std::move(raw), result);
     if (result.soup.triangles.empty()) {
         throw FileError("{}: found no triangles{}; a surface has at least one", file,
                         result.n_degenerate == 0 ? "" : " but such with a point twice");

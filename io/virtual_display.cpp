@@ -4,10 +4,14 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 
@@ -31,6 +35,58 @@ std::string read_line(int pipe) {
         line += letter;
     }
     return {};
+}
+
+/// A connection to the display's local socket, -1 if there is none.
+///
+/// @param is_abstract  by the name that is no file, which a server has where it may make none
+int connect_to(const std::string& number, bool is_abstract) {
+    const std::string name = "/tmp/.X11-unix/X" + number;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::size_t start = is_abstract ? 1 : 0;
+    if (name.size() + start >= sizeof(address.sun_path)) return -1;
+    name.copy(address.sun_path + start, name.size());
+    const int connection = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (connection < 0) return -1;
+    const std::size_t length = offsetof(sockaddr_un, sun_path) + start + name.size();
+    if (::connect(connection, reinterpret_cast<const sockaddr*>(&address),
+                  static_cast<socklen_t>(length)) == 0) {
+        return connection;
+    }
+    ::close(connection);
+    return -1;
+}
+
+/// Whether the server takes the client: the first words of the X protocol, version 11.0, without
+/// authorization.
+bool is_accepted(int connection) {
+    constexpr bool is_little = std::endian::native == std::endian::little;
+    constexpr std::array<unsigned char, 12> request{is_little ? 'l' : 'B', 0, is_little ? 11 : 0,
+                                                    is_little ? 0 : 11};
+    if (::send(connection, request.data(), request.size(), MSG_NOSIGNAL) !=
+        static_cast<ssize_t>(request.size())) {
+        return false;
+    }
+    pollfd wait_for{connection, POLLIN, 0};
+    unsigned char answer = 0;
+    return ::poll(&wait_for, 1, start_timeout_ms) > 0 && ::read(connection, &answer, 1) == 1 &&
+           answer == 1;
+}
+
+/// A client's connection, -1 if the server takes none in time.
+int connect_client(const std::string& number) {
+    constexpr int pause_ms = 20;
+    for (int waited = 0; waited < start_timeout_ms; waited += pause_ms) {
+        for (const bool is_abstract : {true, false}) {
+            const int connection = connect_to(number, is_abstract);
+            if (connection < 0) continue;
+            if (is_accepted(connection)) return connection;
+            ::close(connection);
+        }
+        ::poll(nullptr, 0, pause_ms);
+    }
+    return -1;
 }
 
 void stop(pid_t server) {
@@ -96,6 +152,12 @@ VirtualDisplay::VirtualDisplay() {
         stop(server_);
         throw FileError("pictures: Xvfb did not start; try 'Xvfb -displayfd 1' to see why");
     }
+    connection_ = connect_client(number);
+    if (connection_ < 0) {
+        stop(server_);
+        throw FileError("pictures: Xvfb started display :{} but takes no client within {} s",
+                        number, start_timeout_ms / 1000);
+    }
     if (const char* display = std::getenv("DISPLAY")) {
         previous_ = display;
     }
@@ -108,6 +170,7 @@ VirtualDisplay::~VirtualDisplay() {
     } else {
         ::unsetenv("DISPLAY");
     }
+    ::close(connection_);
     stop(server_);
 }
 

@@ -12,7 +12,6 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
-#include "io/pants_file.h"
 #include "meshing/topology/invariants.h"
 
 namespace couture::drivers {
@@ -67,26 +66,25 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     return ExitCode::done;
 }
 
-// The surface is read and opened, its corners and the record are found; nothing is cut.
+// The surface is read and opened; its corners, the record, given loops and points are found; no
+// handles and cycles are looked for.
 int check_mesh_deck(const io::MeshDeck& deck, const CommonOptions& common) {
-    const PreparedSurface surface =
-        prepare_surface(deck, std::filesystem::path("out") / deck.path.stem() /
-                                  (deck.path.stem().string() + "_problems.vtp"));
-    static_cast<void>(pants_options(deck, surface));
-    if (!deck.like.empty()) static_cast<void>(io::read_pants_record(deck.like));
+    PreparedSurface surface = prepare_surface(deck, {});
+    const std::size_t n_triangles = surface.mesh.n_faces();
+    meshing::check_given_curves(surface.mesh, pants_options(deck, surface));
     const std::string name = meshing::surface_name(surface.mesh);
     if (common.json) {
         const nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
                                                {"status", "valid"},
                                                {"deck", deck.path.string()},
                                                {"title", deck.title},
-                                               {"triangles", surface.mesh.n_faces()},
+                                               {"triangles", n_triangles},
                                                {"surface", name},
                                                {"warnings", log::warnings()}};
         fmt::print("{}\n", object.dump(2));
     } else if (!common.quiet) {
-        fmt::print("{}: valid; triangles {}, {}\n", deck.path.filename().string(),
-                   surface.mesh.n_faces(), name);
+        fmt::print("{}: valid; triangles {}, {}\n", deck.path.filename().string(), n_triangles,
+                   name);
     }
     return ExitCode::done;
 }

@@ -68,6 +68,11 @@ int convert_surface(const SurfaceInputOptions& from, const std::filesystem::path
 
 int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common) {
+    require_file_or_part("convert", from.surface);
+    std::error_code none;
+    if (std::filesystem::equivalent(from.surface, to, none)) {
+        throw InputError("convert: {} would replace its own input; give another name", to.string());
+    }
     if (is_surface_input(from.surface)) return convert_surface(from, to, common);
     if (io::is_surface_file(to)) {
         throw InputError(

@@ -13,6 +13,7 @@ int run_info(const SurfaceInputOptions& options, const CommonOptions& common) {
                    common.json ? io::surface_info_json(surface) : io::surface_info_text(surface));
         return ExitCode::done;
     }
+    require_file_or_part("info", options.surface);
     const io::SplineFile file = io::read_splines(options.surface);
     fmt::print("{}\n", common.json ? io::spline_info_json(file) : io::spline_info_text(file));
     return ExitCode::done;

@@ -185,7 +185,7 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
         for (const auto& side : patch.boundary) {
             sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
         }
-        patches.push_back({{"genus", patch.genus}, {"boundary", sides}});
+        patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
     }
     return object;
 }

@@ -43,8 +43,11 @@ void check_cap(const Features& features, const Cap& cap) {
     if (!region.is_planar) {
         throw TopologyError(
             "cap '{}': the face around ({:.6g}, {:.6g}, {:.6g}) is not plane; only plane faces can "
-            "be opened",
-            cap.name, x.x(), x.y(), x.z());
+            "be opened{}",
+            cap.name, x.x(), x.y(), x.z(),
+            features.regions.size() == 1
+                ? " (no edge is sharp enough to bound a face: take a smaller feature angle)"
+                : "");
     }
     if (!region.is_disc()) {
         throw TopologyError(

@@ -102,29 +102,36 @@ HomotopicCycles::HomotopicCycles(const CutSurface& piece, std::vector<double> fa
     for (int i = 0; i < n; ++i) {
         for (const int h : loops_[i]) loop_of_vertex_[piece.origin(h)] = i;
     }
-    const Cutting whole{piece, factor_};
-    std::vector<char> is_blocked = boundary_vertices(piece);
     for (const int v : points_) {
-        if (is_blocked[v] != 0) {
+        if (loop_of_vertex_[v] >= 0) {
             throw InputError(
                 "homotopic cycle: vertex {} that it must pass lies on a boundary loop; cycles keep "
                 "off them, choose a point beside it",
                 v);
         }
     }
-    for (const int v : points_) is_blocked[v] = 1;
-    ShortestPaths search = whole.paths();
-    paths_.assign(n, std::vector<std::vector<int>>(n));
-    for (int i = 0; i + 1 < n; ++i) {
-        std::vector<int> sources;
-        for (const int h : loops_[i]) sources.push_back(piece.origin(h));
-        search.run({.sources = sources, .is_blocked = &is_blocked});
-        // Settled vertices come by distance: the first on each loop is the nearest.
-        for (const int v : search.settled()) {
-            const int j = loop_of_vertex_[v];
-            if (j > i && paths_[i][j].empty()) paths_[i][j] = search.path_to(v);
-        }
+}
+
+std::vector<int> HomotopicCycles::path_between(int i, int j) const {
+    std::vector<char> is_blocked(piece_->n_vertices(), 0);
+    std::vector<char> is_target(piece_->n_vertices(), 0);
+    for (int v = 0; v < piece_->n_vertices(); ++v) {
+        is_blocked[v] = loop_of_vertex_[v] >= 0;
+        is_target[v] = loop_of_vertex_[v] == j;
     }
+    for (const int v : points_) is_blocked[v] = 1;
+    std::vector<int> sources;
+    for (const int h : loops_[i]) sources.push_back(piece_->origin(h));
+    ShortestPaths search(*piece_, factor_.empty() ? nullptr : &factor_);
+    const int reached =
+        search.run({.sources = sources, .is_blocked = &is_blocked, .is_target = &is_target});
+    if (reached < 0) {
+        throw TopologyError(
+            "homotopic cycle: no path from boundary loop {} to {} beside the points that the cycle "
+            "must pass",
+            i, j);
+    }
+    return search.path_to(reached);
 }
 
 HomotopicCycle HomotopicCycles::find(int i, int j) const {
@@ -134,9 +141,10 @@ HomotopicCycle HomotopicCycles::find(int i, int j) const {
                          n - 1);
     }
     const auto [low, high] = std::minmax({i, j});
+    const std::vector<int> path = path_between(low, high);
     std::optional<HomotopicCycle> cycle;
     for (const Room room : {Room::at_cuts, Room::beside_cuts, Room::made}) {
-        if (!cycle) cycle = find_on(*piece_, low, high, room);
+        if (!cycle) cycle = find_on(path, low, high, room);
     }
     if (!cycle) {
         throw TopologyError("homotopic cycle: no closed path around boundary loops {} and {}{}", i,
@@ -145,11 +153,9 @@ HomotopicCycle HomotopicCycles::find(int i, int j) const {
     return *cycle;
 }
 
-std::optional<HomotopicCycle> HomotopicCycles::find_on(CutSurface surface, int i, int j,
+std::optional<HomotopicCycle> HomotopicCycles::find_on(const std::vector<int>& path, int i, int j,
                                                        Room room) const {
-    Cutting cutting{std::move(surface), factor_};
-    const std::vector<int>& path = paths_[i][j];
-    if (path.empty()) return std::nullopt;
+    Cutting cutting{*piece_, factor_};
     HomotopicCycle cycle;
     for (const int h : path) cycle.path.push_back(cutting.surface.origin(h));
     cycle.path.push_back(cutting.surface.target(path.back()));

@@ -57,7 +57,11 @@ class HomotopicCycles {
     /// with a ring of vertices put around them, for the narrowest places.
     enum class Room { at_cuts, beside_cuts, made };
 
-    [[nodiscard]] std::optional<HomotopicCycle> find_on(CutSurface surface, int i, int j,
+    /// Halfedges of the shortest path from loop i to loop j.
+    ///
+    /// @throws TopologyError  if the points are in the way
+    [[nodiscard]] std::vector<int> path_between(int i, int j) const;
+    [[nodiscard]] std::optional<HomotopicCycle> find_on(const std::vector<int>& path, int i, int j,
                                                         Room room) const;
 
     const CutSurface* piece_;
@@ -66,8 +70,6 @@ class HomotopicCycles {
     std::vector<std::vector<int>> loops_;
     /// Loop of each boundary vertex of the piece, or -1.
     std::vector<int> loop_of_vertex_;
-    /// For each pair i < j the shortest path from i to j, as halfedges.
-    std::vector<std::vector<std::vector<int>>> paths_;
 };
 
 }  // namespace couture::meshing

@@ -10,10 +10,13 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/topology/cycle_bounds.h"
 #include "meshing/topology/handle_tunnel_loops.h"
 #include "meshing/topology/homotopic_cycle.h"
 #include "meshing/topology/invariants.h"
+#include "meshing/topology/least_cost.h"
 #include "meshing/topology/n_pants.h"
+#include "meshing/topology/tight_loop.h"
 
 namespace couture::meshing {
 
@@ -32,20 +35,45 @@ class Decomposer {
           merge_criterion_(mesh, options.merge, planes_, "criterion of the merge") {}
 
     PantsDecomposition run() {
-        const SurfaceInvariants invariants = compute_invariants(mesh_);
-        if (invariants.n_components != 1) {
-            throw TopologyError(
-                "pants: the surface has {} components; it must be in one piece (solids "
-                "with cavities are not cut yet)",
-                invariants.n_components);
+        add_given_loops();
+        for (std::size_t s = 0; s < shells_.size(); ++s) cut_handles(static_cast<int>(s));
+        if (options_.only_handles) {
+            result_.patch_of_face = regions_between_curves(mesh_);
+            return std::move(result_);
         }
+        for (const SurfaceInvariants& shell : shells_) {
+            n_pants_ += std::max(0, -shell.euler_characteristic);
+        }
+        for (const auto& points : options_.cycles_through) cut_through(points);
+        cut_into_pants();
+        finish();
+        if (options_.most_boundaries > 3 && n_pants_ > 1) {
+            report("putting pants together", 0.0);
+            merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
+        }
+        return std::move(result_);
+    }
+
+    // Loops are followed, points found; nothing else is cut.
+    void run_given() {
+        add_given_loops();
+        for (const auto& points : options_.cycles_through) {
+            if (points.empty()) throw no_points();
+            for (const Vector3& point : points) static_cast<void>(nearest_free(point));
+        }
+    }
+
+  private:
+    // Boundary loops and given loops become the first curves.
+    void add_given_loops() {
+        shells_ = component_invariants(mesh_);
         for (const auto edge : mesh_.edges()) {
             if (mesh_.data(edge).curve >= 0) {
                 throw TopologyError("pants: edge {} belongs to curve {} already; take a fresh mesh",
                                     edge.idx(), mesh_.data(edge).curve);
             }
         }
-        result_.genus = invariants.genus;
+        for (const SurfaceInvariants& shell : shells_) result_.genus += shell.genus;
         const auto loops = boundary_loops(mesh_);
         for (const int b : boundary_order(loops.size())) {
             const BoundaryLoop& loop = loops[b];
@@ -56,36 +84,39 @@ class Decomposer {
                                    ? options_.boundary_names[b]
                                    : std::string()});
         }
-        check_options(invariants.euler_characteristic);
+        check_options();
         split_chords_between_curves(mesh_);
-        const std::size_t n_boundaries = result_.curves.size();
+        n_boundaries_ = result_.curves.size();
         for (const GuideLoop& loop : options_.loops) add_loop(loop);
-        cut_handles(invariants.euler_characteristic < 0, n_boundaries);
-        if (options_.only_handles) {
-            result_.patch_of_face = regions_between_curves(mesh_);
-            return std::move(result_);
-        }
-        if (invariants.euler_characteristic < 0) {
-            n_pants_ = -invariants.euler_characteristic;
-            for (const auto& points : options_.cycles_through) cut_through(points);
-            cut_into_pants();
-        }
-        finish(invariants);
-        if (options_.most_boundaries > 3 && n_pants_ > 1) {
-            report("putting pants together", 0.0);
-            merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
-        }
-        return std::move(result_);
     }
 
-  private:
-    // A cycle that was found, by vertices of the mesh or points of its own.
+    static InputError no_points() {
+        return InputError("pants: a cycle through no points; give at least one");
+    }
+
+    // A cycle around two loops that are left.
     struct Candidate {
-        double score = 0.0;
-        // Vertices of the mesh on the cycle and on the path that it runs around.
-        std::set<int> passed;
+        // No cycle around them scores less, then or later.
+        double bound = 0.0;
+        // Of the one that was found.
+        std::optional<double> score = {};
+        // Vertices of the mesh on that cycle and on the path that it runs around.
+        std::set<int> passed = {};
     };
     using Pair = std::array<CurveSide, 2>;
+
+    static bool is_cut_into_pants(const SurfaceInvariants& shell) {
+        return shell.euler_characteristic < 0;
+    }
+
+    [[nodiscard]] std::vector<FaceHandle> faces_of_shell(int shell) const {
+        std::vector<FaceHandle> faces;
+        const std::vector<int> component = face_components(mesh_);
+        for (const auto face : mesh_.faces()) {
+            if (component[face.idx()] == shell) faces.push_back(face);
+        }
+        return faces;
+    }
 
     [[nodiscard]] std::vector<SymmetryPlane> planes() const {
         const bool wanted = options_.cycle.symmetry > 0.0 || options_.merge.symmetry > 0.0;
@@ -111,7 +142,7 @@ class Decomposer {
         return number;
     }
 
-    void check_options(int euler_characteristic) const {
+    void check_options() const {
         constexpr int most = 6;
         if (options_.most_boundaries < 3 || options_.most_boundaries > most) {
             throw InputError("pants: most_boundaries = {}; it must be 3 to {}",
@@ -123,12 +154,12 @@ class Decomposer {
                 throw InputError("pants: {} = {}; it must be positive", name, value);
             }
         }
-        if (euler_characteristic >= 0 &&
-            !(options_.loops.empty() && options_.cycles_through.empty())) {
+        const bool has_pants = std::any_of(shells_.begin(), shells_.end(), is_cut_into_pants);
+        if (!has_pants && !(options_.loops.empty() && options_.cycles_through.empty())) {
             throw InputError(
                 "pants: loops or points are given, but the surface has Euler characteristic {}: a "
                 "sphere, disc, cylinder or torus is not cut into pants",
-                euler_characteristic);
+                compute_invariants(mesh_).euler_characteristic);
         }
     }
 
@@ -186,38 +217,41 @@ class Decomposer {
         }
     }
 
-    // Handles that keep off the curves there are, which get their kinds.
-    void cut_handles(bool are_cuts, std::size_t n_boundaries) {
-        if (result_.genus == 0) return;
+    // Handles of a shell that keep off the curves there are, which get their kinds.
+    void cut_handles(int shell) {
+        if (shells_[shell].genus == 0) return;
+        // A torus is a patch of its own.
+        const bool has_pants = is_cut_into_pants(shells_[shell]);
         report("looking for handle and tunnel loops", 0.0);
-        const std::vector<FaceHandle> faces(mesh_.faces_begin(), mesh_.faces_end());
-        const CutSurface whole(mesh_, faces, std::vector<bool>(mesh_.n_edges(), false));
+        const CutSurface whole(mesh_, faces_of_shell(shell),
+                               std::vector<bool>(mesh_.n_edges(), false));
         std::vector<int> number(mesh_.n_vertices(), -1);
         for (int v = 0; v < whole.n_vertices(); ++v) number[whole.parent(v)] = v;
         std::vector<std::vector<int>> cuts;
-        for (std::size_t c = n_boundaries; c < result_.curves.size(); ++c) {
+        std::vector<int> curve_of_cut;
+        for (std::size_t c = n_boundaries_; c < n_boundaries_ + options_.loops.size(); ++c) {
+            const auto& vertices = result_.curves[c].curve.vertices;
+            if (number[vertices.front().idx()] < 0) continue;
+            curve_of_cut.push_back(static_cast<int>(c));
             auto& cut = cuts.emplace_back();
-            for (const VertexHandle v : result_.curves[c].curve.vertices) {
-                cut.push_back(number[v.idx()]);
-            }
+            for (const VertexHandle v : vertices) cut.push_back(number[v.idx()]);
         }
         const HandleTunnelLoops loops =
-            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops);
+            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops && has_pants);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
             if (loops.is_handle_cut[c]) {
-                result_.curves[n_boundaries + c].kind = PantsCurveKind::handle;
+                result_.curves[curve_of_cut[c]].kind = PantsCurveKind::handle;
             }
         }
         const auto handles = embed_splits(mesh_, loops.surface);
         for (std::size_t c = 0; c < cuts.size(); ++c) {
-            refine_curve(static_cast<int>(n_boundaries + c), cuts[c], loops.surface, handles);
+            refine_curve(curve_of_cut[c], cuts[c], loops.surface, handles);
         }
         for (const HomologyLoop& loop : loops.tunnels) {
             auto& points = result_.tunnels.emplace_back();
             for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
         }
-        // A torus is a patch of its own.
-        if (!are_cuts) return;
+        if (!has_pants) return;
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve curve;
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
@@ -293,12 +327,22 @@ class Decomposer {
         return faces;
     }
 
+    // Whether a piece is a sphere, disc, cylinder or torus by itself, that nothing cuts.
+    [[nodiscard]] bool is_whole_shell(const CutSurface& piece) const {
+        if (piece.euler_characteristic() < 0) return false;
+        const auto loops = piece.boundary_loops();
+        return std::all_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
+            return result_.curves[side_of(piece, loop).curve].kind == PantsCurveKind::boundary;
+        });
+    }
+
     void cut_into_pants() {
         for (auto& faces : pieces()) {
             rest_ = std::move(faces);
             const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
             const auto loops = piece.boundary_loops();
             const int n = static_cast<int>(loops.size());
+            if (is_whole_shell(piece)) continue;
             if (piece.euler_characteristic() >= 0) {
                 std::string names;
                 for (const auto& [side, loop] : sides_of(piece, loops)) {
@@ -317,40 +361,73 @@ class Decomposer {
         }
     }
 
-    void cut_off_pant() {
-        const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
-        const HomotopicCycles cycles(piece, factors(piece));
-        const Sides sides = sides_of(piece, cycles.loops());
-        std::map<Pair, Candidate> known;
-        std::optional<Pair> best;
-        std::array<int, 2> best_loops{};
-        double best_score = std::numeric_limits<double>::infinity();
+    // Candidates of before the last cut that are left, and those around its loop.
+    void update_candidates(const CutSurface& piece, const std::vector<std::vector<int>>& loops,
+                           const Sides& sides) {
+        const CycleBounds bounds(piece, loops);
+        std::map<Pair, Candidate> left;
         for (std::size_t i = 0; i < sides.size(); ++i) {
             for (std::size_t j = i + 1; j < sides.size(); ++j) {
                 const Pair pair{sides[i].first, sides[j].first};
                 auto entry = candidates_.extract(pair);
                 if (entry.empty()) {
-                    const HomotopicCycle cycle = cycles.find(sides[i].second, sides[j].second);
-                    known[pair] = {score(cycle), passed(piece, cycle)};
+                    const double length = bounds.length_around(sides[i].second, sides[j].second);
+                    left[pair].bound = (1.0 - same_score) * merge_criterion_.least_score(length);
                 } else {
-                    known[pair] = std::move(entry.mapped());
-                }
-                const double found = known[pair].score;
-                if (found < best_score - same_score * std::abs(best_score) || !best) {
-                    best = pair;
-                    best_loops = {sides[i].second, sides[j].second};
-                    best_score = found;
+                    left.insert(std::move(entry));
                 }
             }
         }
-        candidates_ = std::move(known);
-        remove_pant(add_cycle(cycles.find(best_loops[0], best_loops[1]), *best));
+        candidates_ = std::move(left);
     }
 
-    int add_cycle(const HomotopicCycle& cycle, const Pair& around) {
+    void cut_off_pant() {
+        const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
+        const HomotopicCycles cycles(piece, factors(piece));
+        const Sides sides = sides_of(piece, cycles.loops());
+        const std::map<CurveSide, int> loop_of(sides.begin(), sides.end());
+        update_candidates(piece, cycles.loops(), sides);
+        std::vector<Pair> pairs;
+        std::vector<double> bounds;
+        for (const auto& [pair, candidate] : candidates_) {
+            pairs.push_back(pair);
+            bounds.push_back(candidate.score.value_or(candidate.bound));
+        }
+        const auto find = [&](const Pair& pair) {
+            return cycles.find(loop_of.at(pair[0]), loop_of.at(pair[1]));
+        };
+        const int best = find_least_cost(
+            bounds,
+            [&](int k) {
+                Candidate& candidate = candidates_.at(pairs[k]);
+                if (!candidate.score) {
+                    const HomotopicCycle cycle = find(pairs[k]);
+                    candidate.score = score(cycle);
+                    candidate.passed = passed(piece, cycle);
+                }
+                return *candidate.score;
+            },
+            same_score);
+        remove_pant(add_cycle(tightened(embed(find(pairs[best]))), pairs[best]));
+    }
+
+    [[nodiscard]] SurfaceCurve embed(const HomotopicCycle& cycle) {
         const auto vertices = embed_splits(mesh_, cycle.surface);
         SurfaceCurve curve;
         for (const int v : cycle.vertices) curve.vertices.push_back(vertices[v]);
+        return curve;
+    }
+
+    // The cuts beside which a cycle is looked for may be in the way of a shorter one.
+    [[nodiscard]] SurfaceCurve tightened(const SurfaceCurve& curve) const {
+        constexpr double relative_radius = 0.1;
+        return tighten_loop(mesh_, curve, relative_radius * bounding_box_diagonal(mesh_),
+                            [&](VertexHandle vertex) {
+                                return cycle_criterion_.factor(mesh_.data(vertex).source);
+                            });
+    }
+
+    int add_cycle(SurfaceCurve curve, const Pair& around) {
         const int number =
             add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
         split_chords_between_curves(mesh_);
@@ -389,7 +466,7 @@ class Decomposer {
     // Cuts along the shortest cycle that passes some points, whichever loops it runs around.
     void cut_through(const std::vector<Vector3>& points) {
         report("cutting through given points", 0.0);
-        if (points.empty()) throw InputError("pants: a cycle through no points; give at least one");
+        if (points.empty()) throw no_points();
         std::set<int> wanted;
         for (const Vector3& point : points) wanted.insert(nearest_free(point).idx());
         std::optional<HomotopicCycle> best;
@@ -420,7 +497,7 @@ class Decomposer {
                 }
             }
         }
-        add_cycle(*best, around);
+        add_cycle(embed(*best), around);
     }
 
     [[nodiscard]] std::set<int> passed(const CutSurface& piece, const HomotopicCycle& cycle) const {
@@ -453,25 +530,23 @@ class Decomposer {
             if (region[face.idx()] != pant) continue;
             for (const VertexHandle vertex : face_vertices(mesh_, face)) gone.insert(vertex.idx());
         }
-        std::erase_if(candidates_, [&](const auto& entry) {
-            return std::any_of(entry.second.passed.begin(), entry.second.passed.end(),
-                               [&](int v) { return gone.contains(v); });
-        });
+        for (auto& [pair, candidate] : candidates_) {
+            if (std::any_of(candidate.passed.begin(), candidate.passed.end(),
+                            [&](int v) { return gone.contains(v); })) {
+                candidate = {.bound = candidate.bound};
+            }
+        }
     }
 
-    void finish(const SurfaceInvariants& invariants) {
+    void finish() {
         result_.patch_of_face = regions_between_curves(mesh_);
-        const std::vector<FaceHandle> faces(mesh_.faces_begin(), mesh_.faces_end());
-        const CutSurface all(mesh_, faces, curve_seams(mesh_));
-        const auto component = all.face_components();
-        const int n_patches = 1 + *std::max_element(component.begin(), component.end());
-        std::vector<std::vector<FaceHandle>> faces_of(n_patches);
-        for (const auto face : mesh_.faces()) {
-            faces_of[result_.patch_of_face[face.idx()]].push_back(face);
-        }
+        const std::vector<int> shell_of_face = face_components(mesh_);
+        const auto faces_of = pieces();
+        const int n_patches = static_cast<int>(faces_of.size());
         for (int p = 0; p < n_patches; ++p) {
             const CutSurface piece(mesh_, faces_of[p], curve_seams(mesh_));
             PantsPatch patch;
+            patch.shell = shell_of_face[faces_of[p].front().idx()];
             for (const auto& loop : piece.boundary_loops()) {
                 patch.boundary.push_back(side_of(piece, loop));
             }
@@ -479,7 +554,7 @@ class Decomposer {
             patch.genus =
                 (2 - piece.euler_characteristic() - static_cast<int>(patch.boundary.size())) / 2;
             const bool is_n_pant = options_.only_given_loops && patch.genus == 0;
-            if (invariants.euler_characteristic < 0 && !is_n_pant &&
+            if (is_cut_into_pants(shells_[patch.shell]) && !is_n_pant &&
                 patch.euler_characteristic() != -1) {
                 throw TopologyError(
                     "pants: patch {} has genus {} and {} boundary loops; it must have genus 0 and "
@@ -488,12 +563,28 @@ class Decomposer {
             }
             result_.patches.push_back(std::move(patch));
         }
-        if (invariants.euler_characteristic >= 0 || options_.only_given_loops) return;
-        const PantsCount count = count_pants(invariants.genus, invariants.n_boundaries);
-        const int n_curves = static_cast<int>(result_.curves.size()) - invariants.n_boundaries;
-        if (n_patches != count.n_pants || n_curves != count.n_curves) {
-            throw TopologyError("pants: {} pants and {} curves; there must be {} and {}", n_patches,
-                                n_curves, count.n_pants, count.n_curves);
+        if (!options_.only_given_loops) check_counts();
+    }
+
+    void check_counts() const {
+        std::vector<PantsCount> found(shells_.size());
+        std::vector<std::set<int>> curves(shells_.size());
+        for (const PantsPatch& patch : result_.patches) {
+            ++found[patch.shell].n_pants;
+            for (const CurveSide& side : patch.boundary) {
+                if (result_.curves[side.curve].kind == PantsCurveKind::boundary) continue;
+                curves[patch.shell].insert(side.curve);
+            }
+        }
+        for (std::size_t s = 0; s < shells_.size(); ++s) {
+            if (!is_cut_into_pants(shells_[s])) continue;
+            const PantsCount count = count_pants(shells_[s].genus, shells_[s].n_boundaries);
+            const int n_curves = static_cast<int>(curves[s].size());
+            if (found[s].n_pants != count.n_pants || n_curves != count.n_curves) {
+                throw TopologyError(
+                    "pants: shell {}: {} pants and {} curves; there must be {} and {}", s,
+                    found[s].n_pants, n_curves, count.n_pants, count.n_curves);
+            }
         }
     }
 
@@ -503,6 +594,9 @@ class Decomposer {
     CutCriterion cycle_criterion_;
     CutCriterion merge_criterion_;
     PantsDecomposition result_;
+    // Connected components, see face_components.
+    std::vector<SurfaceInvariants> shells_;
+    std::size_t n_boundaries_ = 0;
     std::map<int, CurveSide> side_of_;
     std::vector<FaceHandle> rest_;
     int n_pants_ = 0;
@@ -526,6 +620,10 @@ std::string_view to_string(PantsCurveKind kind) {
 
 PantsDecomposition decompose_into_pants(SurfaceMesh& mesh, const PantsOptions& options) {
     return Decomposer(mesh, options).run();
+}
+
+void check_given_curves(SurfaceMesh& mesh, const PantsOptions& options) {
+    Decomposer(mesh, options).run_given();
 }
 
 }  // namespace couture::meshing

@@ -51,6 +51,8 @@ struct PantsPatch {
     /// Sides of curves that bound it; a handle may do so with both.
     std::vector<CurveSide> boundary;
     int genus = 0;
+    /// Connected component of the surface, see face_components.
+    int shell = 0;
 
     [[nodiscard]] int euler_characteristic() const {
         return 2 - 2 * genus - static_cast<int>(boundary.size());
@@ -98,6 +100,7 @@ struct PantsDecomposition {
     std::vector<int> patch_of_face;
     /// Tunnel loops as points; they are no cuts.
     std::vector<std::vector<Vector3>> tunnels;
+    /// Of several shells: the sum of theirs.
     int genus = 0;
 };
 
@@ -109,11 +112,15 @@ struct PantsDecomposition {
 /// pants are put together to larger patches (n-pants: pants, shirt, suit, spacesuit). A sphere,
 /// disc, cylinder or torus is one patch.
 ///
+/// The shells of a solid with cavities are cut one by one. Handles bound in the material: around a
+/// cavity they are the loops that bound outside of it, and tunnels bound in it.
+///
 /// Cycles that score equal to 1e-9 are taken in the order of the curves they run around. After a
 /// cut only cycles that passed what was cut off are looked for again.
 ///
-/// @throws TopologyError  if the surface has several components or is no solid's boundary (see
-///                        find_handle_tunnel_loops), or has curves already
+/// @param mesh  oriented out of the material: the walls of cavities into these
+/// @throws TopologyError  if a shell of the surface is no solid's boundary (see
+///                        find_handle_tunnel_loops), or if it has curves already
 /// @throws InputError     for weights that are negative or all 0, other options out of their range,
 ///                        and for loops and points that are not on the surface (see trace_loop)
 /// @throws TopologyError  for given loops that bound outside the solid, bound a disc or are
@@ -122,5 +129,11 @@ struct PantsDecomposition {
 /// Source: [Maquart19] Alg. 3.1, 3.2, 3.3, Sec. 2.1.2.5.
 [[nodiscard]] PantsDecomposition decompose_into_pants(SurfaceMesh& mesh,
                                                       const PantsOptions& options = {});
+
+/// Whether the loops and points of the options can be followed on the mesh, which is marked with
+/// the loops. Nothing else is cut.
+///
+/// @throws  as decompose_into_pants for its options, and for loops and points
+void check_given_curves(SurfaceMesh& mesh, const PantsOptions& options);
 
 }  // namespace couture::meshing

@@ -228,6 +228,10 @@ double CutCriterion::factor(const SurfacePoint& place) const {
     return value;
 }
 
+double CutCriterion::least_score(double length) const {
+    return *std::min_element(factor_.begin(), factor_.end()) * length / diagonal_;
+}
+
 double CutCriterion::score(const std::vector<double>& factors,
                            const std::vector<Vector3>& points) const {
     if (factors.size() != points.size()) {

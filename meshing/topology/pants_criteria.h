@@ -42,6 +42,8 @@ class CutCriterion {
     [[nodiscard]] bool is_plain_length() const { return is_plain_length_; }
     /// Positive factor on lengths at a point of the surface given by its place on the first mesh.
     [[nodiscard]] double factor(const SurfacePoint& place) const;
+    /// No closed curve of that length scores less.
+    [[nodiscard]] double least_score(double length) const;
     /// Of a closed curve given by the factors at its points: length times factors, by the diagonal
     /// of the surface's box.
     ///

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -12,7 +13,22 @@ namespace couture::meshing {
 
 namespace {
 
-constexpr int n_samples = 24;
+// Genus and centre of the box of each component.
+std::vector<PantsRecord::Shell> measure_shells(const SurfaceMesh& mesh) {
+    std::vector<PantsRecord::Shell> shells;
+    for (const SurfaceInvariants& shell : component_invariants(mesh)) {
+        shells.push_back({.genus = shell.genus});
+    }
+    std::vector<Eigen::AlignedBox3d> box(shells.size());
+    const std::vector<int> component = face_components(mesh);
+    for (const auto face : mesh.faces()) {
+        for (const VertexHandle v : face_vertices(mesh, face)) {
+            box[component[face.idx()]].extend(mesh.point(v));
+        }
+    }
+    for (std::size_t s = 0; s < shells.size(); ++s) shells[s].center = box[s].center();
+    return shells;
+}
 
 void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     low = Vector3::Constant(std::numeric_limits<double>::infinity());
@@ -24,24 +40,11 @@ void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
     }
 }
 
-GuideLoop sample_curve(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
-    const std::size_t n = curve.vertices.size();
-    const double step = curve_length(mesh, curve) / n_samples;
+GuideLoop shape_of(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     GuideLoop samples;
-    double gone = 0.0;
-    double next = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const VertexHandle a = curve.vertices[k];
-        const VertexHandle b = curve.vertices[(k + 1) % n];
-        const double length = (mesh.point(b) - mesh.point(a)).norm();
-        while (samples.points.size() < n_samples && next < gone + length) {
-            const double t = (next - gone) / length;
-            samples.points.emplace_back((1.0 - t) * mesh.point(a) + t * mesh.point(b));
-            samples.normals.push_back(
-                ((1.0 - t) * vertex_normal(mesh, a) + t * vertex_normal(mesh, b)).normalized());
-            next += step;
-        }
-        gone += length;
+    for (const VertexHandle vertex : curve.vertices) {
+        samples.points.push_back(mesh.point(vertex));
+        samples.normals.push_back(vertex_normal(mesh, vertex));
     }
     return samples;
 }
@@ -130,10 +133,15 @@ std::vector<int> match_boundaries(const PantsRecord& record, const SurfaceMesh& 
     }
     const auto loops = boundary_loops(mesh);
     if (loops.size() != wanted.size()) {
+        std::string open_there;
+        for (const PantsRecord::Curve* curve : wanted) {
+            open_there += fmt::format("{}{}", open_there.empty() ? ": " : ", ",
+                                      curve->name.empty() ? "one without a name" : curve->name);
+        }
         throw TopologyError(
-            "replay: the surface has {} boundary loops, the recorded one has {}; open the same "
-            "caps",
-            loops.size(), wanted.size());
+            "replay: the surface has {} boundary loops, the recorded one has {}{}; open the same "
+            "caps (--open, --open-at, --open-facing)",
+            loops.size(), wanted.size(), open_there);
     }
     std::vector<char> is_taken(loops.size(), 0);
     std::vector<int> order;
@@ -163,13 +171,54 @@ std::vector<int> match_boundaries(const PantsRecord& record, const SurfaceMesh& 
     return order;
 }
 
+// "1", or of several shells "1 + 0".
+std::string genera(const std::vector<PantsRecord::Shell>& shells) {
+    std::string text;
+    for (const auto& shell : shells) {
+        text += fmt::format("{}{}", text.empty() ? "" : " + ", shell.genus);
+    }
+    return text;
+}
+
+// For each shell of the member that of the record with the same genus that is nearest.
+std::vector<int> match_shells(const PantsRecord& record, const SurfaceMesh& mesh,
+                              const Warp& warp) {
+    const auto shells = measure_shells(mesh);
+    std::vector<int> partner(shells.size(), -1);
+    for (std::size_t r = 0; r < record.shells.size(); ++r) {
+        const Vector3 center = warp(record.shells[r].center);
+        int match = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t s = 0; s < shells.size(); ++s) {
+            const double distance = (shells[s].center - center).norm();
+            if (partner[s] >= 0 || shells[s].genus != record.shells[r].genus) continue;
+            if (distance >= least) continue;
+            least = distance;
+            match = static_cast<int>(s);
+        }
+        if (match >= 0) partner[match] = static_cast<int>(r);
+    }
+    if (shells.size() != record.shells.size() ||
+        std::find(partner.begin(), partner.end(), -1) != partner.end()) {
+        throw TopologyError("replay: the surface has genus {}, the recorded one has {}",
+                            genera(shells), genera(record.shells));
+    }
+    return partner;
+}
+
 // Brings the patches into the order of the record.
-void order_patches(PantsDecomposition& pants, const PantsRecord& record) {
+void order_patches(PantsDecomposition& pants, const PantsRecord& record,
+                   const std::vector<int>& shell_of_record) {
     std::vector<int> number(pants.patches.size(), -1);
     for (std::size_t p = 0; p < pants.patches.size(); ++p) {
-        const auto known =
-            std::find(record.patches.begin(), record.patches.end(), pants.patches[p].boundary);
-        if (known == record.patches.end()) {
+        pants.patches[p].shell = shell_of_record[pants.patches[p].shell];
+        std::size_t known = 0;
+        while (known < record.patches.size() &&
+               !(record.patches[known] == pants.patches[p].boundary &&
+                 record.shell_of_patch[known] == pants.patches[p].shell)) {
+            ++known;
+        }
+        if (known == record.patches.size()) {
             std::string sides;
             for (const CurveSide& side : pants.patches[p].boundary) {
                 sides += fmt::format(" {}{}", side.curve, side.is_left ? " left" : " right");
@@ -179,7 +228,7 @@ void order_patches(PantsDecomposition& pants, const PantsRecord& record) {
                 "the curves don't run around the same parts as on the recorded member",
                 sides);
         }
-        number[p] = static_cast<int>(known - record.patches.begin());
+        number[p] = static_cast<int>(known);
     }
     std::vector<PantsPatch> patches(pants.patches.size());
     for (std::size_t p = 0; p < patches.size(); ++p) patches[number[p]] = pants.patches[p];
@@ -194,24 +243,23 @@ PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pant
     PantsRecord record;
     measure_box(mesh, record.box_min, record.box_max);
     record.landmarks = landmarks;
-    record.genus = pants.genus;
+    record.shells = measure_shells(mesh);
     for (const PantsCurve& curve : pants.curves) {
         record.curves.push_back(
-            {.kind = curve.kind, .name = curve.name, .shape = sample_curve(mesh, curve.curve)});
+            {.kind = curve.kind, .name = curve.name, .shape = shape_of(mesh, curve.curve)});
     }
-    for (const PantsPatch& patch : pants.patches) record.patches.push_back(patch.boundary);
+    for (const PantsPatch& patch : pants.patches) {
+        record.patches.push_back(patch.boundary);
+        record.shell_of_patch.push_back(patch.shell);
+    }
     return record;
 }
 
 PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
                                 const std::vector<std::string>& boundary_names,
                                 const Landmarks& landmarks, double width) {
-    const SurfaceInvariants invariants = compute_invariants(mesh);
-    if (invariants.genus != record.genus) {
-        throw TopologyError("replay: the surface has genus {}, the recorded one has {}",
-                            invariants.genus, record.genus);
-    }
     const Warp warp(record, mesh, landmarks);
+    const std::vector<int> shell_of_record = match_shells(record, mesh, warp);
     PantsOptions options;
     options.loop_width = width;
     options.only_given_loops = true;
@@ -228,7 +276,7 @@ PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
         throw TopologyError("replay: curve {} is a {} here and was a {} on the recorded member", c,
                             to_string(pants.curves[c].kind), to_string(record.curves[c].kind));
     }
-    order_patches(pants, record);
+    order_patches(pants, record, shell_of_record);
     return pants;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -330,6 +331,26 @@ constexpr std::array<const char*, n_flaw_kinds> kind_plurals{"none",
                                                              "shells without volume"};
 
 /// Six times the volume of a component, its boundary loops closed by triangles to their centres.
+Eigen::AlignedBox3d box_of(const TriangleSoup& soup, const std::vector<int>& triangles) {
+    Eigen::AlignedBox3d box;
+    for (const int t : triangles) {
+        for (const int v : soup.triangles[t]) box.extend(soup.points[v]);
+    }
+    return box;
+}
+
+// Whether each edge of a component has two triangles, in opposite directions.
+std::vector<bool> closed_components(const TriangleSoup& soup, const std::vector<int>& components,
+                                    std::size_t n) {
+    std::vector<bool> is_closed(n, true);
+    const auto sides = sorted_sides(soup);
+    for (const auto& edge : edges_of(sides)) {
+        if (edge.size() == 2 && edge[0].is_forward != edge[1].is_forward) continue;
+        is_closed[components[edge.front().triangle]] = false;
+    }
+    return is_closed;
+}
+
 double closed_volume(const TriangleSoup& soup, const std::vector<int>& triangles) {
     TriangleSoup part = part_of(soup, triangles);
     const Vector3 origin = part.points[part.triangles.front()[0]];
@@ -464,27 +485,41 @@ int orient_outwards(TriangleSoup& soup, const std::vector<int>& turned) {
     return n_turned;
 }
 
-TriangleSoup select_shell(const TriangleSoup& soup, int number) {
-    const auto parts = groups(vertex_components(soup));
+SelectedShell select_shell(const TriangleSoup& soup, int number) {
+    const std::vector<int> components = vertex_components(soup);
+    const auto parts = groups(components);
     if (number < 0 || static_cast<std::size_t>(number) >= parts.size()) {
         throw InputError("select_shell: there is no shell {}; there are {}, counted from 0", number,
                          parts.size());
     }
     std::vector<int> chosen = parts[number];
-    try {
-        const auto nested = nest_shells(soup);
-        for (const NestedShell& other : nested) {
-            if (other.parent == number && other.depth == nested[number].depth + 1) {
-                chosen.insert(chosen.end(), other.shell.triangles.begin(),
-                              other.shell.triangles.end());
-            }
+    SelectedShell result;
+    const std::vector<bool> is_closed = closed_components(soup, components, parts.size());
+    if (is_closed[number]) {
+        // Of the others only those count that can lie around it or in it: what else is wrong with
+        // the surface is left out of the body.
+        const Eigen::AlignedBox3d box = box_of(soup, parts[number]);
+        std::vector<int> near;
+        for (std::size_t c = 0; c < parts.size(); ++c) {
+            if (!is_closed[c]) continue;
+            const Eigen::AlignedBox3d other = box_of(soup, parts[c]);
+            if (!box.contains(other) && !other.contains(box)) continue;
+            near.insert(near.end(), parts[c].begin(), parts[c].end());
         }
-    } catch (const Error&) {
-        // Not all closed: what lies in what cannot be told.
+        std::sort(near.begin(), near.end());
+        const auto nested = nest_shells(part_of(soup, near));
+        const auto self = std::find_if(nested.begin(), nested.end(), [&](const NestedShell& shell) {
+            return near[shell.shell.triangles.front()] == parts[number].front();
+        });
+        result.was_cavity = self->shell.is_cavity;
+        for (const NestedShell& other : nested) {
+            if (other.parent != self - nested.begin()) continue;
+            for (const int t : other.shell.triangles) chosen.push_back(near[t]);
+        }
     }
     std::sort(chosen.begin(), chosen.end());
-    TriangleSoup result = part_of(soup, chosen);
-    drop_unused_points(result);
+    result.soup = part_of(soup, chosen);
+    drop_unused_points(result.soup);
     return result;
 }
 

@@ -113,10 +113,20 @@ struct SurfaceCheck {
 /// @return how many shells were turned
 int orient_outwards(TriangleSoup& soup, const std::vector<int>& turned = {});
 
-/// The component of a number (in the order of their smallest triangle, across common vertices),
-/// with the shells directly in it if it is closed.
+/// One component of several, as a body of its own.
+struct SelectedShell {
+    TriangleSoup soup;
+    /// Whether it was the wall of a cavity: the body is then what lies inside the cavity.
+    bool was_cavity = false;
+};
+
+/// The component of a number (in the order of their smallest triangle, across common vertices); if
+/// it is closed, with the closed shells directly in it, which are its cavities. Triangles turn as
+/// they did.
 ///
 /// @throws InputError  if there is no such component: how many there are
-[[nodiscard]] TriangleSoup select_shell(const TriangleSoup& soup, int number);
+/// @throws TopologyError, GeometryError  if the shell encloses nothing, or touches one whose box
+///                                       lies in its own, or the other way round
+[[nodiscard]] SelectedShell select_shell(const TriangleSoup& soup, int number);
 
 }  // namespace couture::meshing

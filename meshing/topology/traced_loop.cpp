@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "iga/core/error.h"
+#include "meshing/surface/shortest_paths.h"
 #include "meshing/topology/cylinder_cycle.h"
+#include "meshing/topology/tight_loop.h"
 
 namespace couture::meshing {
 
@@ -21,20 +22,9 @@ class Tracer {
     SurfaceCurve run() {
         check();
         choose_region();
-        SurfaceCurve curve{follow(), true};
-        constexpr int max_rounds = 10;
-        constexpr double worth_going_on = 1e-3;
-        double before = weight(curve);
-        for (int round = 0; round < max_rounds; ++round) {
-            const auto tighter = tighten(curve);
-            if (!tighter) break;
-            const double after = weight(*tighter);
-            if (after >= before) break;
-            curve = *tighter;
-            if (after > (1.0 - worth_going_on) * before) break;
-            before = after;
-        }
-        return curve;
+        const SurfaceCurve curve{follow(), true};
+        return tighten_loop(mesh_, curve, 2.0 * width_,
+                            [&](VertexHandle vertex) { return factor(mesh_.point(vertex)); });
     }
 
   private:
@@ -125,20 +115,22 @@ class Tracer {
         }
     }
 
+    [[nodiscard]] double factor(const Vector3& x) const {
+        const double d = distance_to_loop(x, guide_.points) / width_;
+        return 1.0 + d * d;
+    }
+
     [[nodiscard]] std::vector<double> factors(const CutSurface& piece) const {
-        std::vector<double> factor(piece.n_vertices());
-        for (int v = 0; v < piece.n_vertices(); ++v) {
-            const double d = distance_to_loop(piece.point(v), guide_.points) / width_;
-            factor[v] = 1.0 + d * d;
-        }
-        return factor;
+        std::vector<double> of_vertex(piece.n_vertices());
+        for (int v = 0; v < piece.n_vertices(); ++v) of_vertex[v] = factor(piece.point(v));
+        return of_vertex;
     }
 
     // Shortest paths from anchor to anchor; what a path runs twice is left out.
     std::vector<VertexHandle> follow() {
         CutSurface piece(mesh_, faces_, curve_seams(mesh_));
         piece.split_chords();
-        const std::vector<double> factor = factors(piece);
+        const std::vector<double> of_vertex = factors(piece);
         const std::vector<char> is_blocked = boundary_vertices(piece);
         std::map<int, int> number;
         for (int v = 0; v < piece.n_vertices(); ++v) {
@@ -150,7 +142,7 @@ class Tracer {
             if (stops.empty() || stops.back() != v) stops.push_back(v);
         }
         while (stops.size() > 1 && stops.back() == stops.front()) stops.pop_back();
-        ShortestPaths search(piece, &factor);
+        ShortestPaths search(piece, &of_vertex);
         std::vector<int> walk;
         for (std::size_t k = 0; k < stops.size(); ++k) {
             const int source = stops[k];
@@ -162,7 +154,8 @@ class Tracer {
             if (reached < 0) {
                 throw TopologyError(
                     "loop: no way from ({:.6g}, {:.6g}, {:.6g}) to the next point that crosses no "
-                    "other curve and no boundary",
+                    "other curve and no boundary; given loops must not cross: move the points of "
+                    "this one or leave one out",
                     piece.point(source).x(), piece.point(source).y(), piece.point(source).z());
             }
             auto vertices = search.vertices_to(reached);
@@ -218,103 +211,6 @@ class Tracer {
             simple.push_back(v);
         }
         return simple;
-    }
-
-    [[nodiscard]] double weight(const SurfaceCurve& curve) const {
-        double sum = 0.0;
-        const std::size_t n = curve.vertices.size();
-        std::vector<double> factor(n);
-        for (std::size_t k = 0; k < n; ++k) {
-            const double d =
-                distance_to_loop(mesh_.point(curve.vertices[k]), guide_.points) / width_;
-            factor[k] = 1.0 + d * d;
-        }
-        for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t next = (k + 1) % n;
-            sum += 0.5 * (factor[k] + factor[next]) *
-                   (mesh_.point(curve.vertices[next]) - mesh_.point(curve.vertices[k])).norm();
-        }
-        return sum;
-    }
-
-    // Faces of the region; those that came by splits belong to it if their neighbours do.
-    void update_faces() {
-        const std::vector<int> region = regions_between_curves(mesh_);
-        const int here = region[faces_.front().idx()];
-        faces_.clear();
-        for (const auto face : mesh_.faces()) {
-            if (region[face.idx()] == here) faces_.push_back(face);
-        }
-    }
-
-    // The shortest loop in an annulus around this one; nothing if there is no annulus.
-    [[nodiscard]] std::optional<SurfaceCurve> tighten(const SurfaceCurve& curve) {
-        update_faces();
-        const CutSurface piece(mesh_, faces_, curve_seams(mesh_));
-        const std::vector<char> is_boundary = boundary_vertices(piece);
-        std::vector<int> number(mesh_.n_vertices(), -1);
-        for (int v = 0; v < piece.n_vertices(); ++v) number[piece.parent(v)] = v;
-        std::vector<int> sources;
-        for (const VertexHandle vertex : curve.vertices) sources.push_back(number[vertex.idx()]);
-        ShortestPaths search(piece);
-        search.run({.sources = sources, .is_blocked = &is_boundary, .limit = 2.0 * width_});
-        constexpr int n_radii = 5;
-        double radius = 2.0 * width_;
-        for (int k = 0; k < n_radii; ++k, radius *= 0.5) {
-            std::vector<FaceHandle> around;
-            for (int f = 0; f < piece.n_faces(); ++f) {
-                const auto triangle = piece.triangle(f);
-                if (std::all_of(triangle.begin(), triangle.end(), [&](int v) {
-                        return search.distance(v) <= radius && is_boundary[v] == 0;
-                    })) {
-                    around.emplace_back(faces_[f]);
-                }
-            }
-            if (around.empty()) return std::nullopt;
-            if (auto found = shortest_in(around, curve)) return found;
-        }
-        return std::nullopt;
-    }
-
-    [[nodiscard]] std::optional<SurfaceCurve> shortest_in(const std::vector<FaceHandle>& faces,
-                                                          const SurfaceCurve& curve) {
-        CutSurface annulus(mesh_, faces, curve_seams(mesh_));
-        const auto component = annulus.face_components();
-        if (*std::max_element(component.begin(), component.end()) > 0 ||
-            annulus.euler_characteristic() != 0 || annulus.boundary_loops().size() != 2) {
-            return std::nullopt;
-        }
-        // Which of the two ends lies on the left, and that the curve goes around at all.
-        std::vector<int> number(mesh_.n_vertices(), -1);
-        for (int v = 0; v < annulus.n_vertices(); ++v) number[annulus.parent(v)] = v;
-        std::vector<int> path;
-        for (std::size_t k = 0; k < curve.vertices.size(); ++k) {
-            const int u = number[curve.vertices[k].idx()];
-            const int v = number[curve.vertices[(k + 1) % curve.vertices.size()].idx()];
-            const int h = u < 0 || v < 0 ? -1 : annulus.find_halfedge(u, v);
-            if (h < 0 || annulus.is_boundary_vertex(u)) return std::nullopt;
-            path.push_back(h);
-        }
-        CutSurface halves = annulus;
-        halves.slice(path);
-        const auto side = halves.face_components();
-        const int left = side[CutSurface::face(path.front())];
-        if (*std::max_element(side.begin(), side.end()) != 1 ||
-            halves.boundary_loops().size() != 4) {
-            return std::nullopt;
-        }
-        const auto ends = annulus.boundary_loops();
-        const bool first_is_left = side[CutSurface::face(ends[0].front())] == left;
-        Cutting cutting{annulus, factors(annulus)};
-        const auto found =
-            find_cycle_around(cutting, ends[first_is_left ? 0 : 1], ends[first_is_left ? 1 : 0],
-                              boundary_vertices(annulus));
-        if (!found || found->vertices.size() < 3) return std::nullopt;
-        SurfaceCurve shorter;
-        for (const int v : found->vertices) {
-            shorter.vertices.emplace_back(annulus.parent(v));
-        }
-        return shorter;
     }
 
     SurfaceMesh& mesh_;

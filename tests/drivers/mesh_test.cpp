@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -42,7 +44,8 @@ TEST_CASE("mesh: stages, dimensions and weights can be chosen", "[drivers]") {
     CHECK(object["tunnels"].size() == 2);
     CHECK(object["patches"].empty());
     const auto weights = run_couture(
-        "mesh plate_with_two_holes --edge-length 8 --cycle length=1 symmetry=4 --merge length=1",
+        "mesh plate_with_two_holes --edge-length 8 --cycle length=1 --cycle symmetry=4 --merge "
+        "length=1",
         folder.path());
     CHECK(weights.exit_code == 0);
     CHECK_THAT(weights.output, Contains("2 pants"));
@@ -55,7 +58,7 @@ TEST_CASE("mesh: another member of a family is cut as the first one was", "[driv
     REQUIRE(first.exit_code == 0);
     CHECK_THAT(first.output, Contains("cap cap_x_low"));
     const auto second = run_couture(
-        "mesh seal --set L1=79 R3=43 --open caps --edge-length 3.5 --like first/seal_pants.json "
+        "mesh seal --set L1=79 --set R3=43 --edge-length 3.5 --like first/seal_pants.json "
         "--json --out second",
         folder.path());
     REQUIRE(second.exit_code == 0);
@@ -64,10 +67,10 @@ TEST_CASE("mesh: another member of a family is cut as the first one was", "[driv
     const auto member = nlohmann::json::parse(second.output);
     CHECK(member["patches"] == reference["patches"]);
     CHECK(std::filesystem::exists(folder.path() / "second/seal_pants.json"));
-    const auto closed =
-        run_couture("mesh seal --edge-length 4 --like first/seal_pants.json", folder.path());
+    REQUIRE(run_couture("convert seal --edge-length 4 seal.off", folder.path()).exit_code == 0);
+    const auto closed = run_couture("mesh seal.off --like first/seal_pants.json", folder.path());
     CHECK(closed.exit_code == 2);
-    CHECK_THAT(closed.errors, Contains("open the same caps"));
+    CHECK_THAT(closed.errors, Contains("open the same caps") && Contains("cap_x_low"));
 }
 
 TEST_CASE("mesh: a deck says all of it", "[drivers]") {
@@ -94,6 +97,47 @@ TEST_CASE("mesh: a deck says all of it", "[drivers]") {
     CHECK_THAT(changed.errors, Contains("edge_length"));
 }
 
+TEST_CASE("mesh: dimensions and points of a part are in the unit of the deck", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto volume = [&](const std::string& text) {
+        io::write_text(folder.path() / "plate.toml", text);
+        const auto result = run_couture("mesh plate.toml --stage surface --json", folder.path());
+        CAPTURE(result.errors);
+        REQUIRE(result.exit_code == 0);
+        return nlohmann::json::parse(result.output)["surface"]["volume"].get<double>();
+    };
+    const std::string geometry = "[geometry]\npart = \"plate\"\n[geometry.parameters]\nP1 = ";
+    const double in_mm = volume(geometry + "30\n[meshing]\nedge_length = 8\n");
+    const std::string metres = "[units]\nsystem = \"m N Pa\"\n";
+    constexpr double cubic_millimetre = 1e-9;
+    CHECK(volume(metres + geometry + "0.03\n[meshing]\nedge_length = 0.008\n") ==
+          Approx(in_mm * cubic_millimetre));
+    CHECK(volume(metres + geometry + "\"30 mm\"\n[meshing]\nedge_length = \"8 mm\"\n") ==
+          Approx(in_mm * cubic_millimetre));
+}
+
+TEST_CASE("check: loops, points and caps that a deck names are tried", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::string& meshing, const std::string& text) {
+        io::write_text(
+            folder.path() / "part.toml",
+            "[geometry]\npart = \"plate_with_two_holes\"\n[meshing]\nedge_length = 8\n" + meshing);
+        const auto result = run_couture("check part.toml", folder.path());
+        CHECK(result.exit_code == 2);
+        CHECK_THAT(result.errors, Contains(text));
+        CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
+    };
+    refused("[[meshing.loop]]\npoints = [[0, 0, 500], [10, 0, 500], [0, 10, 500]]\n", "point 0 at");
+    refused("[[meshing.cycle_through]]\npoints = [[0, 0, 500]]\n", "away from the surface");
+    refused("open = \"lid\"\n", "has no face 'lid'");
+    io::write_text(folder.path() / "fan.off",
+                   "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 0 1 4\n");
+    io::write_text(folder.path() / "fan.toml", "[geometry]\nsurface = \"fan.off\"\n");
+    CHECK_THAT(run_couture("check fan.toml", folder.path()).errors,
+               Contains("non-manifold edge") && !Contains("problems.vtp"));
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
 TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     const TemporaryFolder folder;
     const auto refused = [&](const std::string& arguments, const std::string& text) {
@@ -102,6 +146,8 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
         CHECK_THAT(result.errors, Contains(text));
     };
     refused("plate --stage pant", "did you mean 'pants'?");
+    refused("wheal", "there is no file and no part 'wheal'; did you mean 'wheel'?");
+    refused("--set P1=25 plate --stage pant", "did you mean 'pants'?");
     refused("plate --set P1", "write NAME=NUMBER");
     refused("plate --set P9=3", "unknown parameter 'P9'");
     refused("plate --cycle weight=3", "has no term 'weight'");
@@ -122,6 +168,15 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     io::write_text(folder.path() / "fan.off",
                    "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 0 1 4\n");
     refused("fan.off --open caps", "non-manifold edge");
+    io::write_text(folder.path() / "bar.toml",
+                   "[geometry]\npart = \"box\"\n[material.steel]\nyoungs_modulus = 1\n");
+    refused("bar.toml", "a deck for 'couture solve'");
+    refused("casting --open caps", "name plane faces of");
+    refused("seal --feature-angle 179 --open caps", "take a smaller feature angle");
+    std::filesystem::create_symlink("ring.off", folder.path() / "ring.off");
+    refused("ring.off", "ring.off");
+    REQUIRE(::mkfifo((folder.path() / "pipe.off").c_str(), 0600) == 0);
+    refused("pipe.off", "is a pipe or device");
     refused("fan.off", "with 3 triangles: 0, 1, 2");
     refused("fan.off --edge-length 3", "are for parts");
     io::write_text(folder.path() / "inside_out.off",

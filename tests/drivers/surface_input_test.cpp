@@ -103,6 +103,12 @@ TEST_CASE("mesh: what can be told apart is repaired and said", "[drivers]") {
     // A cavity is legal, whichever way it turns.
     const auto hollow = taken(two_cubes(0.5, 0.2), "", "inside out");
     CHECK(hollow["surface"]["volume"].get<double>() == Approx(1.0 - 0.125));
+    // One shell of it: the outer one keeps its cavity, the wall of the cavity is a body.
+    CHECK(taken(two_cubes(0.5, 0.2), "--shell 0", "")["surface"]["volume"].get<double>() ==
+          Approx(1.0 - 0.125));
+    CHECK(taken(two_cubes(0.5, 0.2, true), "--shell 1",
+                "shell 1 is the wall of a cavity")["surface"]["volume"]
+              .get<double>() == Approx(0.125));
     CHECK(taken(two_cubes(0.5, 3.0), "--shell 1", "")["surface"]["volume"].get<double>() ==
           Approx(0.125));
     std::string open = "OFF\n8 5 0\n" + cube_points + cube_faces(0);
@@ -149,6 +155,11 @@ TEST_CASE("convert: surfaces to all formats, not to splines", "[drivers]") {
     io::write_text(folder.path() / "a.xml", "<xml/>");
     CHECK_THAT(run_couture("convert a.xml b.stl", folder.path()).errors,
                Contains("a.xml is a spline file or deck"));
+    CHECK_THAT(run_couture("convert a.off a.off", folder.path()).errors,
+               Contains("would replace its own input"));
+    io::write_text(folder.path() / "hollow.off", two_cubes(0.5, 0.2, true));
+    CHECK_THAT(run_couture("convert hollow.off b.off --shell 1", folder.path()).errors,
+               Contains("shell 1 is the wall of a cavity"));
     CHECK_THAT(run_couture("convert a.stl b.stl --set P1=3", folder.path()).errors,
                Contains("--set and --edge-length are for parts"));
 }

@@ -21,7 +21,10 @@ TEST_CASE("pants record: what is written is read again, to the last bit", "[io]"
     const auto path = folder / "pants.json";
     io::write_pants_record(path, record, "here");
     const PantsRecord again = io::read_pants_record(path);
-    CHECK(again.genus == record.genus);
+    REQUIRE(again.shells.size() == 1);
+    CHECK(again.shells[0].genus == 2);
+    CHECK(again.shells[0].center == record.shells[0].center);
+    CHECK(again.shell_of_patch == record.shell_of_patch);
     CHECK(again.box_min == record.box_min);
     CHECK(again.box_max == record.box_max);
     CHECK(again.landmarks.corners == record.landmarks.corners);
@@ -46,17 +49,28 @@ TEST_CASE("pants record: files that hold something else are refused", "[io]") {
         CHECK_THROWS_WITH(io::read_pants_record(path),
                           Contains("pants.json: ") && Contains(message));
     };
-    refused("", "no record of a decomposition");
-    refused("[1, 2]", "no record of a decomposition");
-    refused("{}", "'format' is ''");
-    const std::string head = R"({"format": "couture pants 1", "box": [[0,0,0],[1,1,1]], )"
-                             R"("genus": 0, "corners": {}, "feature_curves": {}, )";
-    refused(head + R"("curves": [], "patches": [[{"curve": 3, "left": true}]]})",
-            "a patch names curve 3; there are 0");
-    refused(head + R"("curves": [{"kind": "x", "name": "", "points": [], "normals": []}]})",
-            "'x' is no kind of curve");
-    refused(head + R"("curves": [{"kind": "cycle", "name": "", "points": [[0, 1]], )"
+    refused("", "no JSON from byte");
+    refused("[1, 2]", "the file is array, expected an object");
+    refused("{}", "format is missing; take the NAME_pants.json");
+    refused(R"({"format": "couture pants 0"})", "format is 'couture pants 0', expected");
+    const auto head = [](const std::string& box) {
+        return R"({"format": "couture pants 2", "box": )" + box +
+               R"(, "shells": [{"genus": 0, "center": [0, 0, 0]}], "corners": {}, )"
+               R"("feature_curves": {}, )";
+    };
+    refused(head("[[0,0,0],[0,0,0]]") + R"("curves": []})", "box has size 0 x 0 x 0");
+    refused(head("[[0,0,0],[1,-1,1]]") + R"("curves": []})", "box has size 1 x -1 x 1");
+    const std::string good = head("[[0,0,0],[1,1,1]]");
+    refused(good + R"("curves": 3})", "curves is number, expected a list");
+    refused(good + R"("curves": [], "patches": [{"shell": 0, "boundary": [{"curve": 3, )"
+                   R"("left": true}]}]})",
+            "patches[0].boundary[0].curve = 3; it must be below 0");
+    refused(good + R"("curves": [{"kind": "x", "name": "", "points": [], "normals": []}]})",
+            "curves[0].kind: 'x' is no kind of curve");
+    refused(good + R"("curves": [{"kind": "cycle", "name": "", "points": [[0, 1]], )"
                    R"("normals": []}]})",
-            "a point has 2 numbers");
+            "curves[0].points[0] has 2 numbers");
+    refused(good + R"("curves": [{"kind": "cycle", "name": "", "points": [], "normals": []}]})",
+            "curves[0] has 0 points");
     CHECK_THROWS_AS(io::read_pants_record(folder / "no.json"), FileError);
 }

@@ -203,6 +203,31 @@ TEST_CASE("read_surface: OFF", "[io]") {
           "a.off: found no triangles; a surface has at least one");
 }
 
+TEST_CASE("read_surface: the mark of UTF-8 before a text, and lines of OBJ that go on", "[io]") {
+    const std::string mark = "\xEF\xBB\xBF";
+    const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n 2 \\\r\n 3\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const std::string stl =
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid\n";
+    for (const auto& [name, text] : {std::pair{"a.off", off}, std::pair{"a.obj", obj},
+                                     std::pair{"a.ply", ply}, std::pair{"a.stl", stl}}) {
+        CAPTURE(name);
+        const TriangleSoup marked = read(name, mark + text);
+        CHECK(marked.points.size() == 3);
+        CHECK(marked.triangles == std::vector<std::array<int, 3>>{{0, 1, 2}});
+    }
+    // Lines are counted as they stand in the file.
+    CHECK_THAT(message("a.obj", "v 0 0 0\nf 1 \\\n 1 \\\n 1\nv 0 x 0\n"),
+               Catch::StartsWith("a.obj:5: "));
+    CHECK_THAT(message("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1e160 0\n3 0 1 2\n"),
+               Catch::Contains("point 2 is as large as 1e+160; areas and volumes overflow"));
+}
+
 TEST_CASE("read_surface: files that can't be read", "[io]") {
     for (const char* name : {"a.stl", "a.obj", "a.off", "a.ply", "a.vtp"}) {
         CHECK(message(name, "") == std::string(name) + ": the file is empty; expected triangles");

@@ -10,6 +10,9 @@
 #include "meshing/surface/caps.h"
 #include "meshing/surface/features.h"
 #include "meshing/topology/invariants.h"
+#include "tests/data_folder.h"
+#include "tests/meshing/surface/public_surfaces.h"
+#include "tests/meshing/surface/surface_samples.h"
 #include "tests/meshing/topology/part_members.h"
 
 using namespace couture;
@@ -95,6 +98,27 @@ TEST_CASE("replay_pants: on the member itself the cuts stay where they are", "[t
     }
 }
 
+TEST_CASE("replay_pants: on the same surface no curve gets longer or shorter",
+          "[meshing][topology]") {
+    const auto folder = test::data_folder();
+    if (!folder) return;
+    const std::string file =
+        GENERATE("mambo_S3.off", "hexgen_mount1.off", "vampy_atrium.off", "hexgen_joint.off");
+    CAPTURE(file);
+    const TriangleSoup soup = read_off(*folder / "surfaces" / file);
+    SurfaceMesh mesh = make_surface_mesh(soup);
+    const PantsDecomposition pants = decompose_into_pants(mesh);
+    const PantsRecord record = record_pants(mesh, pants, {});
+    SurfaceMesh again = make_surface_mesh(soup);
+    const PantsDecomposition replayed = replay_pants(again, record, {}, {});
+    REQUIRE(kinds_of(replayed) == kinds_of(pants));
+    REQUIRE(sides_of(replayed) == sides_of(pants));
+    for (std::size_t c = 0; c < pants.curves.size(); ++c) {
+        CAPTURE(c);
+        REQUIRE(replayed.curves[c].length == Approx(pants.curves[c].length).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("replay_pants: another topology is refused", "[topology][parts]") {
     Member torus = make_member("double_torus", {}, 0.0, false);
     const PantsDecomposition pants = decompose_into_pants(torus.mesh);
@@ -108,8 +132,9 @@ TEST_CASE("replay_pants: another topology is refused", "[topology][parts]") {
         open.landmarks);
     Member closed = make_member("seal", {}, 0.0, false);
     REQUIRE_THROWS_WITH(replay_pants(closed.mesh, of_seal, {}, closed.landmarks),
-                        "replay: the surface has 0 boundary loops, the recorded one has 2; open "
-                        "the same caps");
+                        "replay: the surface has 0 boundary loops, the recorded one has 2: "
+                        "cap_x_low, cap_x_high; open the same caps (--open, --open-at, "
+                        "--open-facing)");
     Member renamed = make_member("seal", {}, 0.0, true);
     renamed.boundary_names[0] = "elsewhere";
     REQUIRE_THROWS_WITH(

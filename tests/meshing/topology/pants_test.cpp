@@ -8,6 +8,7 @@
 
 #include "iga/core/error.h"
 #include "meshing/topology/homotopic_cycle.h"
+#include "meshing/topology/pants_record.h"
 #include "tests/data_folder.h"
 #include "tests/meshing/surface/public_surfaces.h"
 #include "tests/meshing/surface/surface_samples.h"
@@ -131,10 +132,63 @@ TEST_CASE("pants: errors name the cause", "[meshing][topology]") {
                         Catch::Contains("weight -1"));
     static_cast<void>(decompose_into_pants(mesh));
     REQUIRE_THROWS_WITH(decompose_into_pants(mesh), Catch::Contains("already"));
-    TriangleSoup far = make_cube(1);
-    for (auto& point : far.points) point[0] += 5.0;
-    SurfaceMesh two = make_surface_mesh(join(make_cube(1), far));
-    REQUIRE_THROWS_WITH(decompose_into_pants(two), Catch::Contains("2 components"));
+}
+
+TEST_CASE("pants: the shells of a solid with cavities are cut one by one", "[meshing][topology]") {
+    const auto placed = [](TriangleSoup soup, double factor, const Vector3& shift, bool is_cavity) {
+        for (Vector3& point : soup.points) point = factor * point + shift;
+        for (auto& triangle : soup.triangles) {
+            if (is_cavity) std::swap(triangle[1], triangle[2]);
+        }
+        return soup;
+    };
+    const TriangleSoup plate = make_plate_with_holes(2, 3);
+    const TriangleSoup torus = make_torus(12, 8, 2.0, 0.5);
+    const TriangleSoup solid =
+        join(join(placed(plate, 100.0, {0, 0, 0}, false), placed(plate, 4.0, {20, 20, 40}, true)),
+             join(placed(torus, 5.0, {50, 50, 50}, true),
+                  placed(make_cube(2), 5.0, {10, 200, 50}, true)));
+    SurfaceMesh mesh = make_surface_mesh(solid);
+    const PantsDecomposition pants = decompose_into_pants(mesh);
+    require_valid(mesh, pants);
+    CHECK(pants.genus == 5);
+    CHECK(pants.curves.size() == 6);
+    CHECK(pants.tunnels.size() == 5);
+    std::map<int, std::vector<int>> chi_of_shell;
+    for (const PantsPatch& patch : pants.patches) {
+        chi_of_shell[patch.shell].push_back(patch.euler_characteristic());
+    }
+    CHECK(chi_of_shell ==
+          std::map<int, std::vector<int>>{{0, {-1, -1}}, {1, {-1, -1}}, {2, {0}}, {3, {2}}});
+
+    // In the material around a cavity a disc spans what is a tunnel of the same shape as a body.
+    SurfaceMesh body = make_surface_mesh(torus);
+    SurfaceMesh cavity = make_surface_mesh(placed(torus, 1.0, {0, 0, 0}, true));
+    const auto length_of_tunnel = [](SurfaceMesh& surface) {
+        const auto loop = decompose_into_pants(surface).tunnels.front();
+        double length = 0.0;
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            length += (loop[(k + 1) % loop.size()] - loop[k]).norm();
+        }
+        return length;
+    };
+    // Polygons of 12 and 8 corners: the long way inside, the short way around the tube.
+    CHECK(length_of_tunnel(body) == Approx(24.0 * 1.5 * std::sin(std::acos(-1.0) / 12.0)));
+    CHECK(length_of_tunnel(cavity) == Approx(16.0 * 0.5 * std::sin(std::acos(-1.0) / 8.0)));
+
+    // The same again from the record, on shells in another order.
+    const PantsRecord record = record_pants(mesh, pants, {});
+    SurfaceMesh again = make_surface_mesh(
+        join(join(placed(make_cube(2), 5.0, {10, 200, 50}, true),
+                  placed(plate, 4.0, {20, 20, 40}, true)),
+             join(placed(torus, 5.0, {50, 50, 50}, true), placed(plate, 100.0, {0, 0, 0}, false))));
+    const PantsDecomposition replayed = replay_pants(again, record, {}, {});
+    REQUIRE(replayed.patches.size() == pants.patches.size());
+    for (std::size_t p = 0; p < pants.patches.size(); ++p) {
+        CHECK(replayed.patches[p].boundary == pants.patches[p].boundary);
+        CHECK(replayed.patches[p].shell == pants.patches[p].shell);
+        CHECK(replayed.patches[p].genus == pants.patches[p].genus);
+    }
 }
 
 TEST_CASE("homotopic cycle: around two holes of a flat plate it is the shortest box",

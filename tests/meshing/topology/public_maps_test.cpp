@@ -3,10 +3,12 @@
 
 #include "meshing/surface/harmonic_map.h"
 #include "meshing/surface/open_pant.h"
+#include "meshing/surface/repair.h"
 #include "meshing/surface/shortest_paths.h"
 #include "meshing/surface/surface_curves.h"
 #include "meshing/topology/handle_tunnel_loops.h"
 #include "meshing/topology/pants.h"
+#include "meshing/topology/solid_check.h"
 #include "tests/data_folder.h"
 #include "tests/meshing/surface/map_samples.h"
 #include "tests/meshing/surface/public_surfaces.h"
@@ -75,34 +77,46 @@ CutSurface cut_along_handle(const CutSurface& torus) {
     return loops.surface;
 }
 
+// The pieces of a surface that is cut into pants, or that has none, map one to one.
+void require_maps_of_pieces(const std::string& file, const TriangleSoup& soup) {
+    SurfaceMesh mesh = make_surface_mesh(soup);
+    const PantsDecomposition pants = decompose_into_pants(mesh);
+    std::map<int, std::vector<FaceHandle>> faces;
+    for (const auto face : mesh.faces()) faces[pants.patch_of_face[face.idx()]].push_back(face);
+    REQUIRE(faces.size() == pants.patches.size());
+    for (const auto& [patch, faces_of_patch] : faces) {
+        INFO(file << ", patch " << patch);
+        const CutSurface piece(mesh, faces_of_patch, curve_seams(mesh));
+        switch (piece.euler_characteristic()) {
+            case -1:
+                require_maps_of_pant(piece);
+                break;
+            case 0:
+                require_maps_of_annulus(piece.boundary_loops().empty() ? cut_along_handle(piece)
+                                                                       : piece);
+                break;
+            case 1:
+                require_maps_of_disc(piece);
+                break;
+            default:
+                require_maps_of_disc(slit(piece));
+        }
+    }
+}
+
 }  // namespace
 
 TEST_CASE("harmonic maps: no flipped triangle on any public surface", "[meshing][topology]") {
     const auto folder = test::data_folder();
     if (!folder) return;
     for (const std::string& file : public_surface_files()) {
-        SurfaceMesh mesh = make_surface_mesh(read_surface(*folder / "surfaces" / file));
-        const PantsDecomposition pants = decompose_into_pants(mesh);
-        std::map<int, std::vector<FaceHandle>> faces;
-        for (const auto face : mesh.faces()) faces[pants.patch_of_face[face.idx()]].push_back(face);
-        REQUIRE(faces.size() == pants.patches.size());
-        for (const auto& [patch, faces_of_patch] : faces) {
-            INFO(file << ", patch " << patch);
-            const CutSurface piece(mesh, faces_of_patch, curve_seams(mesh));
-            switch (piece.euler_characteristic()) {
-                case -1:
-                    require_maps_of_pant(piece);
-                    break;
-                case 0:
-                    require_maps_of_annulus(piece.boundary_loops().empty() ? cut_along_handle(piece)
-                                                                           : piece);
-                    break;
-                case 1:
-                    require_maps_of_disc(piece);
-                    break;
-                default:
-                    require_maps_of_disc(slit(piece));
-            }
-        }
+        require_maps_of_pieces(file, read_surface(*folder / "surfaces" / file));
+    }
+    // Triangles of these run against each other until they are repaired.
+    for (const char* moment : {"00", "05", "10", "15"}) {
+        const std::string file = std::string("vampy_moving_atrium_") + moment + ".off";
+        RepairedSurface repaired = repair_surface(read_surface(*folder / "surfaces" / file));
+        orient_outwards(repaired.soup, repaired.turned);
+        require_maps_of_pieces(file, repaired.soup);
     }
 }

@@ -87,14 +87,21 @@ TEST_CASE("check_solid: shells beside each other and solids in cavities", "[mesh
     CHECK_THAT(text_of(apart), Contains("1 disjoint shell:\n  (3.25, 0.25, 0.25): shell 1 outside "
                                         "shell 0, 12 triangles, size 0.5 x 0.5 x 0.5\n"));
     CHECK_FALSE(check_solid(apart).solid);
-    CHECK(check_solid(select_shell(apart, 1)).solid->volume == Approx(0.125));
+    CHECK(check_solid(select_shell(apart, 1).soup).solid->volume == Approx(0.125));
     CHECK_THROWS_WITH(select_shell(apart, 2),
                       "select_shell: there is no shell 2; there are 2, counted from 0");
     const TriangleSoup hollow =
         join(make_cube(2), reversed(moved(make_cube(2), 0.5, {0.2, 0.2, 0.2})));
     const TriangleSoup nested = join(hollow, moved(make_cube(1), 0.1, {0.4, 0.4, 0.4}));
     CHECK_THAT(text_of(nested), Contains("shell 2 in the cavity of shell 1"));
-    CHECK(select_shell(nested, 0).triangles.size() == hollow.triangles.size());
+    CHECK(select_shell(nested, 0).soup.triangles.size() == hollow.triangles.size());
+    CHECK_FALSE(select_shell(nested, 0).was_cavity);
+    // What is wrong elsewhere takes no cavity away.
+    const TriangleSoup beside_open = join(hollow, moved(make_square(1), 1.0, {5, 0, 0}));
+    CHECK(select_shell(beside_open, 0).soup.triangles.size() == hollow.triangles.size());
+    const SelectedShell inside = select_shell(nested, 1);
+    CHECK(inside.was_cavity);
+    CHECK(check_solid(inside.soup).solid->volume == Approx(0.125 - 0.001));
     CHECK_THAT(
         text_of(join(make_tube(6, 1, 1.0, 1.0), moved(make_tube(5, 1, 1.0, 1.0), 1.0, {5, 0, 0}))),
         Contains("component 1 beside component 0"));
