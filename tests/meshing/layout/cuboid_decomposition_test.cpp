@@ -1,0 +1,96 @@
+#include "meshing/layout/cuboid_decomposition.h"
+
+#include <catch2/catch.hpp>
+
+#include "iga/core/error.h"
+#include "meshing/layout/layout_validity.h"
+#include "meshing/layout/polycube_templates.h"
+#include "meshing/parts/part_surface.h"
+#include "meshing/topology/invariants.h"
+#include "tests/meshing/layout/embedding_checks.h"
+
+using namespace couture;
+using namespace couture::meshing;
+
+namespace {
+
+TemplateLibrary some_templates() {
+    TemplateLibrary library;
+    const std::vector<SectionCell> quad{{0, 0}};
+    const std::vector<SectionCell> column{{0, 0}, {0, 1}, {0, 2}};
+    // A rim with a flange half way up.
+    const std::vector<SectionCell> rim{{0, 0}, {0, 1}, {0, 2}, {1, 1}};
+    // A hub of three cells with a boss that is higher by one on both sides.
+    const std::vector<SectionCell> hub{{0, -1}, {0, 0}, {0, 1}, {0, 2},
+                                       {0, 3},  {1, 0}, {1, 1}, {1, 2}};
+    const std::vector<SectionCell> angle{{0, 0}, {0, 1}, {1, 0}};
+    library.add(make_bar_template("tube", quad, {}));
+    library.add(make_bar_template("tee", quad, {quad}));
+    library.add(make_bar_template("tee_in_column", column, {{{0, 1}}}));
+    library.add(make_bar_template("rim", rim, {{{1, 1}}}));
+    library.add(make_bar_template("hub", hub, {{{1, 1}}}));
+    library.add(make_bar_template("angle", angle, {{{1, 0}}}));
+    return library;
+}
+
+struct Job {
+    SurfaceMesh opened;
+    Features features;
+    PantsDecomposition pants;
+    ClosingCaps caps;
+};
+
+// A part, opened at its caps and cut into pants.
+Job cut_part(const std::string& name, const PantsOptions& options = {}) {
+    const PartSurface part = make_part_surface(name);
+    SurfaceMesh closed = make_surface_mesh(part.soup);
+    const Features features = detect_features(closed);
+    std::vector<Cap> caps;
+    for (std::size_t f = 0; f < part.faces.size(); ++f) {
+        if (!part.faces[f].is_cap) continue;
+        const auto triangle = std::ranges::find(part.face_of_triangle, static_cast<int>(f)) -
+                              part.face_of_triangle.begin();
+        caps.push_back(
+            {part.faces[f].name, closed.data(FaceHandle(static_cast<int>(triangle))).region});
+    }
+    Job job;
+    const OpenedSurface opened = open_caps(closed, features, caps);
+    job.opened = make_surface_mesh(opened.soup);
+    job.caps = caps_of(closed, opened);
+    job.features = detect_features(job.opened);
+    PantsOptions named = options;
+    for (const BoundaryLoop& loop : boundary_loops(job.opened)) {
+        named.boundary_names.push_back(caps[opened.cap_of_vertex[loop.vertices[0].idx()]].name);
+    }
+    job.pants = decompose_into_pants(job.opened, named);
+    return job;
+}
+
+}  // namespace
+
+TEST_CASE("cuboid decomposition: parts with one pant", "[layout]") {
+    const auto [name, shape, n_cuboids] = GENERATE(table<std::string, std::string, int>(
+        {{"pant", "tee", 4}, {"half_seal", "tee_in_column", 10}}));
+    CAPTURE(name);
+    const Job job = cut_part(name);
+    const CuboidDecomposition cuboids =
+        decompose_into_cuboids(job.opened, job.features, job.pants, job.caps, some_templates());
+    CHECK(cuboids.templates == std::vector<std::string>{shape});
+    CHECK(cuboids.volume.n_cuboids() == n_cuboids);
+    CHECK(cuboids.volume.sets.size() == 3);
+    check_embedding(cuboids.mesh, cuboids.surface);
+    for (const auto edge : job.opened.edges()) {
+        if (job.opened.data(edge).feature < 0 || job.opened.is_boundary(edge)) continue;
+    }
+}
+
+TEST_CASE("cuboid decomposition: parts with several", "[layout]") {
+    const auto [name, n_cuboids] = GENERATE(
+        table<std::string, int>({{"double_t", 8}, {"seal", 20}, {"wheel", 76}, {"casting", 8}}));
+    CAPTURE(name);
+    const Job job = cut_part(name);
+    const CuboidDecomposition cuboids =
+        decompose_into_cuboids(job.opened, job.features, job.pants, job.caps, some_templates());
+    CHECK(cuboids.volume.n_cuboids() == n_cuboids);
+    check_embedding(cuboids.mesh, cuboids.surface);
+}
