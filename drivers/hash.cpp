@@ -1,15 +1,9 @@
 #include "drivers/hash.h"
 
-#include <fmt/format.h>
+#include "iga/core/text_hash.h"
 
 namespace couture::drivers {
 
-std::string fnv_hash(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const char c : text) {
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-    }
-    return fmt::format("{:016x}", hash);
-}
+std::string fnv_hash(std::string_view text) { return text_hash(text); }
 
 }  // namespace couture::drivers

@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 
+#include "iga/core/text_hash.h"
 #include "iga/topology/multipatch.h"
 
 namespace couture::iga {
 
 namespace {
-
-/// 64-bit FNV-1a, the same on every machine.
-std::uint64_t fnv_1a(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const char c : text) {
-        hash ^= static_cast<unsigned char>(c);
-        hash *= 0x100000001b3ULL;
-    }
-    return hash;
-}
 
 void append_knots(std::string& text, const KnotVector& knots) {
     fmt::format_to(std::back_inserter(text), "degree {} count {} at", knots.degree(),
@@ -85,7 +75,7 @@ std::string signature(const MultiPatch<d>& multipatch) {
             text += entity.name() + '\n';
         }
     }
-    return fmt::format("{:016x}", fnv_1a(text));
+    return text_hash(text);
 }
 
 template std::string signature(const MultiPatch<2>&);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "iga/core/types.h"
 #include "meshing/layout/quad_layout.h"
 
 namespace couture::meshing {
@@ -33,6 +34,12 @@ struct VolumetricLayout {
     [[nodiscard]] int n_cuboids() const { return static_cast<int>(cuboids.size()); }
     /// Nodes of a side, counter-clockwise seen from outside the cuboid.
     [[nodiscard]] std::array<int, 4> nodes_of(const CuboidSide& side) const;
+};
+
+/// A volumetric layout with a place for each node.
+struct PlacedLayout {
+    VolumetricLayout layout;
+    std::vector<Vector3> positions;
 };
 
 /// Nodes of each side, as nodes_of.

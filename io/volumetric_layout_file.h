@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "meshing/layout/volumetric_layout.h"
+
+namespace couture::io {
+
+/// Reads a coarse mesh of hexahedra: Medit (.mesh, text) or legacy VTK (.vtk, text, versions up to
+/// 4). A hexahedron with a negative volume is a mirrored one: its two ends are exchanged. Points
+/// that no hexahedron has are left out; the others keep their order. Other cells of a Medit file
+/// are passed over.
+///
+/// @throws FileError  if it is missing, malformed, has no hexahedra or (VTK) other cells; a
+///                    hexahedron has no volume or a point twice; or the boundary is no manifold:
+///                    names the file and the line or the hexahedron, counted from 0
+[[nodiscard]] meshing::PlacedLayout read_volumetric_layout(const std::filesystem::path& path);
+
+/// The same for texts at hand; `name` is what messages call them.
+[[nodiscard]] meshing::PlacedLayout parse_medit_layout(const std::string& name,
+                                                       std::string_view text);
+[[nodiscard]] meshing::PlacedLayout parse_vtk_layout(const std::string& name,
+                                                     std::string_view text);
+
+}  // namespace couture::io
