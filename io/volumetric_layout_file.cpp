@@ -153,6 +153,7 @@ PlacedLayout parse_vtk_layout(const std::string& name, std::string_view text) {
     const int n_points = read_count(cursor, "points", 6, text.size());
     cursor.word("the type of the points");
     std::vector<Vector3> points;
+    points.reserve(n_points);
     for (int i = 0; i < n_points; ++i) points.push_back(read_point(cursor));
     cursor.expect("CELLS");
     const int n_cells = read_count(cursor, "cells", 18, text.size());

@@ -135,6 +135,7 @@ std::vector<int> component_genera(const QuadLayout& layout) {
     for (const auto& arc : layout.arcs()) --chi[parts.find(arc.from)];
     for (const auto& quad : layout.quads()) ++chi[parts.find(quad[0])];
     std::vector<int> genera;
+    genera.reserve(chi.size());
     for (const auto& [root, value] : chi) genera.push_back(1 - value / 2);
     return genera;
 }
