@@ -94,7 +94,12 @@ void read_criterion(Section& parent, const std::string& name, meshing::Criterion
     weights = {.length = read("length"),
                .symmetry = read("symmetry"),
                .curvature = read("curvature"),
-               .sharp = read("sharp")};
+               .sharp = section.number("sharp", dimensions::none).value_or(0.0)};
+    if (weights.sharp <= -1.0) {
+        section.mistake("sharp", fmt::format("'sharp' is {}; lengths along sharp edges are divided "
+                                             "by 1 + sharp, which must be positive",
+                                             weights.sharp));
+    }
     section.finish();
     if (weights.length + weights.symmetry + weights.curvature <= 0.0) {
         parent.mistake(name, fmt::format("'{}' gives no weight to length, symmetry or curvature; "

@@ -17,6 +17,8 @@ struct LayoutTie {
     /// one at the last vertex, the others anywhere between, in this order.
     std::vector<int> nodes;
     bool is_feature = false;
+    /// Of a feature: whether the solid fills more than half a turn around it.
+    bool is_reflex = false;
     /// Named in messages.
     std::string name;
 };

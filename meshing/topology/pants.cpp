@@ -252,12 +252,36 @@ class Decomposer {
             for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
         }
         if (!has_pants) return;
+        std::vector<SurfaceCurve> curves;
         for (const HomologyLoop& loop : loops.handles) {
-            SurfaceCurve curve;
+            SurfaceCurve& curve = curves.emplace_back();
             for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
+        }
+        if (!cycle_criterion_.is_plain_length()) tighten_handles(curves);
+        for (SurfaceCurve& curve : curves) {
             add_curve({.kind = PantsCurveKind::handle, .curve = std::move(curve)});
         }
         split_chords_between_curves(mesh_);
+    }
+
+    // Handles are shortest by plain length; each is pulled tight by the criterion of cycles between
+    // all others.
+    void tighten_handles(std::vector<SurfaceCurve>& curves) {
+        const auto mark = [&](const SurfaceCurve& curve, int number) {
+            for (const HalfedgeHandle h : curve_halfedges(mesh_, curve)) {
+                mesh_.data(mesh_.edge_handle(h)).curve = number;
+            }
+        };
+        const auto first = static_cast<int>(result_.curves.size());
+        for (std::size_t c = 0; c < curves.size(); ++c) {
+            mark(curves[c], first + static_cast<int>(c));
+        }
+        for (SurfaceCurve& curve : curves) {
+            mark(curve, -1);
+            curve = tightened(curve);
+            mark(curve, first);
+        }
+        for (const SurfaceCurve& curve : curves) mark(curve, -1);
     }
 
     [[nodiscard]] CurveSide side_of(const CutSurface& piece, const std::vector<int>& loop) const {

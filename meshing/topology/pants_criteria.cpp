@@ -169,12 +169,15 @@ std::vector<SymmetryPlane> find_symmetry_planes(const SurfaceMesh& mesh) {
 
 CutCriterion::CutCriterion(const SurfaceMesh& mesh, const CriterionWeights& weights,
                            const std::vector<SymmetryPlane>& planes, const char* name) {
-    const std::array<double, 4> all{weights.length, weights.symmetry, weights.curvature,
-                                    weights.sharp};
+    const std::array<double, 3> all{weights.length, weights.symmetry, weights.curvature};
     for (const double w : all) {
         if (!std::isfinite(w) || w < 0.0) {
             throw InputError("{}: weight {}; weights must be finite and not negative", name, w);
         }
+    }
+    if (!std::isfinite(weights.sharp) || weights.sharp <= -1.0) {
+        throw InputError("{}: weight {} of sharp edges; it must be finite and above -1", name,
+                         weights.sharp);
     }
     if (weights.length + weights.symmetry + weights.curvature <= 0.0) {
         throw InputError(
@@ -206,7 +209,7 @@ CutCriterion::CutCriterion(const SurfaceMesh& mesh, const CriterionWeights& weig
                 weights.curvature * (0.5 + std::atan(scaled) / std::numbers::pi);
         }
     }
-    if (weights.sharp > 0.0) {
+    if (weights.sharp != 0.0) {
         for (const auto vertex : mesh.vertices()) {
             bool is_on_feature = false;
             for (const auto edge : mesh.ve_range(vertex)) {

@@ -6,15 +6,16 @@
 
 namespace couture::meshing {
 
-/// What makes a closed curve a good cut, as weights of terms; none may be negative, length,
-/// symmetry and curvature not all 0.
+/// What makes a closed curve a good cut, as weights of terms; none but `sharp` may be negative,
+/// length, symmetry and curvature not all 0.
 struct CriterionWeights {
     double length = 1.0;
     /// Distance from the nearest plane of symmetry.
     double symmetry = 0.0;
     /// Convexity: 0 in the valleys of the surface, 1 on its ridges (minima rule).
     double curvature = 0.0;
-    /// How much cheaper feature edges are than other ways.
+    /// How much cheaper feature edges are than other ways: lengths there are divided by 1 + sharp.
+    /// Above -1; below 0 they are dearer, so that cuts cross them.
     double sharp = 0.0;
 };
 

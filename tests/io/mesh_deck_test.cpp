@@ -94,6 +94,7 @@ TEST_CASE("mesh deck: mistakes name the line and the rule", "[io]") {
     refused(wheel + "[meshing]\nopen_at = [1, 2, 3]\n", "expected points [x, y, z]");
     refused(wheel + "[meshing]\nopen_at = [[1, 2]]\n", "open_at");
     refused(wheel + "[meshing]\nopen_at = 3\n", "expected a list of points");
+    refused(wheel + "[meshing]\ncycle = { length = 1, sharp = -1 }\n", "must be positive");
     refused(wheel + "[meshing]\ncycle = { sharp = 1 }\n", "one must be positive");
     refused(wheel + "[meshing]\ncycle = { weight = 1 }\n", "weight");
     refused(wheel + "[meshing]\ncycle = 1\n", "expected weights");

@@ -57,7 +57,7 @@ Cube tied_cube(int n) {
         return index;
     };
     for (const FeatureCurve& curve : features.curves) {
-        LayoutTie tie{curve.vertices, {}, true, "edge"};
+        LayoutTie tie{curve.vertices, {}, true, false, "edge"};
         const std::array<int, 3> from = grid(cube.mesh.point(curve.vertices.front()));
         const std::array<int, 3> to = grid(cube.mesh.point(curve.vertices.back()));
         for (int k = 0; k <= n; ++k) {
