@@ -172,20 +172,53 @@ LaidOutSurface make_can_layout(int n, double turn) {
 
 LaidOutSurface make_torus_layout(int m, const std::vector<int>& sections,
                                  const std::vector<int>& turns) {
+    const int n_around = 8 * m;
     const int n_tube = 4 * m;
     const int n_sections = static_cast<int>(sections.size());
-    std::vector<int> nodes;
+    const auto vertex = [&](int i, int j) {
+        return VertexHandle(n_tube * (i % n_around) + (j + n_tube) % n_tube);
+    };
+    std::vector<VertexHandle> nodes;
     std::vector<std::array<int, 4>> quads;
     for (int s = 0; s < n_sections; ++s) {
         for (int k = 0; k < 4; ++k) {
-            nodes.push_back(n_tube * sections[s] + (k * m + turns[s]) % n_tube);
+            nodes.push_back(vertex(sections[s], k * m + turns[s]));
             const int next = (s + 1) % n_sections;
             quads.push_back(
                 {4 * s + k, 4 * next + k, 4 * next + (k + 1) % 4, 4 * s + (k + 1) % 4});
         }
     }
-    return lay_out(make_torus(8 * m, n_tube, 1.0, 0.4), quads, nodes,
-                   [](const auto&) { return false; });
+    QuadLayout layout(4 * n_sections, quads);
+    std::vector<std::vector<VertexHandle>> arcs(layout.n_arcs());
+    const auto add = [&](int from, int to, std::vector<VertexHandle> path) {
+        if (from > to) std::reverse(path.begin(), path.end());
+        arcs[layout.find_arc(from, to)] = std::move(path);
+    };
+    for (int s = 0; s < n_sections; ++s) {
+        const int next = (s + 1) % n_sections;
+        const int n_steps = (sections[next] - sections[s] + n_around) % n_around;
+        for (int k = 0; k < 4; ++k) {
+            std::vector<VertexHandle> along;
+            int j = k * m + turns[s];
+            const int rise = turns[next] - turns[s];
+            for (int i = 0; i <= n_steps; ++i) {
+                along.push_back(vertex(sections[s] + i, j));
+                const int wanted =
+                    k * m + turns[s] + std::min(i, n_steps - 1) * rise / (n_steps - 1);
+                if (wanted == j) continue;
+                j = wanted;
+                along.push_back(vertex(sections[s] + i, j));
+            }
+            add(4 * s + k, 4 * next + k, along);
+            std::vector<VertexHandle> around;
+            for (int i = 0; i <= m; ++i) {
+                around.push_back(vertex(sections[s], k * m + turns[s] + i));
+            }
+            add(4 * s + k, 4 * s + (k + 1) % 4, around);
+        }
+    }
+    return finish(make_surface_mesh(make_torus(n_around, n_tube, 1.0, 0.4)), std::move(layout),
+                  std::move(nodes), std::move(arcs), [](const auto&) { return false; });
 }
 
 LaidOutSurface make_tube_layout(int m, bool is_zigzag) {
