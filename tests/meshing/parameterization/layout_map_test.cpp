@@ -6,6 +6,8 @@
 #include "iga/core/error.h"
 #include "iga/core/timer.h"
 #include "layout_surfaces.h"
+#include "meshing/parameterization/map_samples.h"
+#include "meshing/parameterization/node_relocation.h"
 #include "meshing/parameterization/sheet_sizes.h"
 #include "meshing/parameterization/symmetric_dirichlet.h"
 
@@ -48,5 +50,14 @@ TEST_CASE("layout map: zzz", "[parameterization]") {
                    r.distortion.largest_angle_change, r.distortion.mean_angle_change,
                    r.distortion.smallest_area_ratio, r.distortion.largest_area_ratio);
         check_descent(map);
+        timer = Timer();
+        const LayoutSamples samples = sample_layout_map(surface.mesh, surface.embedding, map);
+        const double t_samples = timer.seconds();
+        timer = Timer();
+        const auto moved = relocate_nodes(surface.mesh, surface.embedding, samples);
+        const auto& m = moved.report;
+        fmt::print("   samples {:.3f} s relocate {:.3f} s inverted {} {} move {} energies {} conv {}\n", t_samples,
+                   timer.seconds(), m.n_inverted_at_start, m.n_inverted, m.largest_move,
+                   fmt::join(m.energies, " "), m.is_converged);
     }
 }
