@@ -1,5 +1,6 @@
 #include "meshing/surface/triangle_tree.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numeric>
