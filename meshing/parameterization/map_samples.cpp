@@ -78,7 +78,7 @@ class Unfolding {
                 if (a[k] < low || a[k] > high) return false;
                 continue;
             }
-            const auto [first, last] = std::minmax((low - a[k]) / d, (high - a[k]) / d);
+            const auto [first, last] = std::minmax({(low - a[k]) / d, (high - a[k]) / d});
             begin = std::max(begin, first);
             end = std::min(end, last);
         }
