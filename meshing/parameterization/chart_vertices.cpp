@@ -39,8 +39,8 @@ std::vector<LayoutPlace> layout_places(const SurfaceMesh& mesh, const EmbeddedLa
     for (const auto& arc : layout.arcs()) {
         for (const int node : {arc.from, arc.to}) {
             const VertexHandle vertex = embedding.nodes[node];
-            if (!vertex.is_valid() || (places[vertex.idx()].node >= 0 &&
-                                       places[vertex.idx()].node != node)) {
+            if (!vertex.is_valid() ||
+                (places[vertex.idx()].node >= 0 && places[vertex.idx()].node != node)) {
                 throw TopologyError(
                     "EmbeddedLayout: node {} has vertex {}; each node of an arc needs one of its "
                     "own",

@@ -6,10 +6,14 @@ namespace couture::meshing {
 
 Vector2 turned(const Vector2& v, int quarter_turns) {
     switch (quarter_turns & 3) {
-        case 1: return {-v.y(), v.x()};
-        case 2: return {-v.x(), -v.y()};
-        case 3: return {v.y(), -v.x()};
-        default: return v;
+        case 1:
+            return {-v.y(), v.x()};
+        case 2:
+            return {-v.x(), -v.y()};
+        case 3:
+            return {v.y(), -v.x()};
+        default:
+            return v;
     }
 }
 

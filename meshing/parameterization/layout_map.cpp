@@ -205,8 +205,8 @@ class MapEnergy {
             const Matrix<2> target = nearest_frame(F, f);
             const Vector2 u = F.row(0).transpose();
             const Vector2 u_c = target.row(0).transpose();
-            sum += flat_[f].area * std::abs(std::atan2(u_c.x() * u.y() - u_c.y() * u.x(),
-                                                       u_c.dot(u)));
+            sum +=
+                flat_[f].area * std::abs(std::atan2(u_c.x() * u.y() - u_c.y() * u.x(), u_c.dot(u)));
         }
         return sum / total_area_;
     }

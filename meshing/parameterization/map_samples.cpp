@@ -42,8 +42,7 @@ class Unfolding {
         std::set<std::tuple<int, int, double, double>> is_met;
         const auto meet = [&](const PlacedFace& f) {
             const Vector2& shift = f.placement.shift;
-            return is_met
-                .emplace(f.face.idx(), f.placement.quarter_turns, shift.x(), shift.y())
+            return is_met.emplace(f.face.idx(), f.placement.quarter_turns, shift.x(), shift.y())
                 .second;
         };
         meet(faces.front());
@@ -146,8 +145,7 @@ class Unfolding {
         }
         const Vector2 a = at[(k + 1) % 3] - at[k];
         const Vector2 b = at[(k + 2) % 3] - at[k];
-        return {std::atan2(a.y(), a.x()),
-                std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))};
+        return {std::atan2(a.y(), a.x()), std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))};
     }
 
     const SurfaceMesh& mesh_;

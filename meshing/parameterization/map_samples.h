@@ -16,7 +16,7 @@ namespace couture::meshing {
 /// @throws InputError     for less than one part
 /// @throws GeometryError  if a grid point is not covered; names quad and point
 [[nodiscard]] LayoutSamples sample_layout_map(const SurfaceMesh& mesh,
-                                              const EmbeddedLayout& embedding,
-                                              const LayoutMap& map, int n_per_cell = 1);
+                                              const EmbeddedLayout& embedding, const LayoutMap& map,
+                                              int n_per_cell = 1);
 
 }  // namespace couture::meshing

@@ -65,7 +65,8 @@ class CellEnergy {
   public:
     CellEnergy(const EmbeddedLayout& embedding, const SampleGrid& grid, const SurfaceSlide& slide,
                const std::vector<double>& cell_lengths)
-        : corners_(cell_corners(embedding, grid, cell_lengths)), unknowns_(grid.n_points, {-1, -1}) {
+        : corners_(cell_corners(embedding, grid, cell_lengths)),
+          unknowns_(grid.n_points, {-1, -1}) {
         for (int i = 0; i < grid.n_points; ++i) {
             for (int k = 0; k < slide.n_directions(i); ++k) unknowns_[i][k] = n_unknowns_++;
         }
@@ -281,7 +282,8 @@ RelocatedSamples relocate_nodes(const SurfaceMesh& mesh, const EmbeddedLayout& e
 
 LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                              const LayoutSamples& samples, int n) {
-    if (n < 1) throw InputError("refine_samples: {} parts of each cell; there must be 1 or more", n);
+    if (n < 1)
+        throw InputError("refine_samples: {} parts of each cell; there must be 1 or more", n);
     std::vector<int> cells = samples.n_cells;
     for (int& count : cells) count *= n;
     const SampleGrid grid = make_sample_grid(embedding.layout, cells);

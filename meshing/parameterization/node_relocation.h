@@ -52,8 +52,7 @@ struct RelocatedSamples {
 /// The grid with each cell divided into n x n: bilinear, put back onto the surface.
 ///
 /// @throws InputError  for less than one part
-[[nodiscard]] LayoutSamples refine_samples(const SurfaceMesh& mesh,
-                                           const EmbeddedLayout& embedding,
+[[nodiscard]] LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                                            const LayoutSamples& samples, int n);
 
 }  // namespace couture::meshing

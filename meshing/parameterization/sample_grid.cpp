@@ -72,8 +72,8 @@ QuadMesh to_quad_mesh(const LayoutSamples& samples) {
             for (int i = 0; i < n_s; ++i) {
                 const int at = j * (n_s + 1) + i;
                 const auto& numbers = grid.quads[q];
-                mesh.quads.push_back({numbers[at], numbers[at + 1], numbers[at + n_s + 2],
-                                      numbers[at + n_s + 1]});
+                mesh.quads.push_back(
+                    {numbers[at], numbers[at + 1], numbers[at + n_s + 2], numbers[at + n_s + 1]});
             }
         }
     }

@@ -22,8 +22,7 @@ struct SheetSizeOptions {
 /// by these lengths, over the target size, rounded, and no less than the minimum.
 ///
 /// @throws InputError  for a negative target size or a minimum below 1
-[[nodiscard]] std::vector<int> sheet_sizes(const SurfaceMesh& mesh,
-                                           const EmbeddedLayout& embedding,
+[[nodiscard]] std::vector<int> sheet_sizes(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                                            const SheetSizeOptions& options);
 
 /// Cells along each arc from those of the sheets: the same for all members of a family.

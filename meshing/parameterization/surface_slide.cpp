@@ -56,8 +56,8 @@ void SurfaceSlide::find_curves(const EmbeddedLayout& embedding, const SampleGrid
             }
             curve.vertices.insert(curve.vertices.end(), path.begin() + 1, path.end());
             for (const int point : grid.arcs[arc]) curve_of_point_[point] = number;
-            node = layout.arcs()[arc].from == node ? layout.arcs()[arc].to
-                                                   : layout.arcs()[arc].from;
+            node =
+                layout.arcs()[arc].from == node ? layout.arcs()[arc].to : layout.arcs()[arc].from;
             arc = -1;
             if (stays[node]) break;
             for (const int next : arcs_at[node]) {
@@ -164,8 +164,7 @@ SurfaceSlide::State SurfaceSlide::placed(const MatrixX& points) const {
         } else {
             const int region = region_of_point_[i];
             const NearestPlace place = trees_[region].nearest(points.col(i));
-            const auto vertices =
-                face_vertices(mesh_, faces_of_region_[region][place.triangle]);
+            const auto vertices = face_vertices(mesh_, faces_of_region_[region][place.triangle]);
             Vector3 normal = Vector3::Zero();
             for (int k = 0; k < 3; ++k) {
                 normal += place.weights[k] * normal_at(vertices[k], region);
@@ -173,8 +172,8 @@ SurfaceSlide::State SurfaceSlide::placed(const MatrixX& points) const {
             inside.col(i) = normal.normalized();
             state.points.col(i) = place.point;
             state.directions[i].col(0) = inside.col(i).unitOrthogonal();
-            state.directions[i].col(1) = Vector3(inside.col(i)).cross(
-                Vector3(state.directions[i].col(0)));
+            state.directions[i].col(1) =
+                Vector3(inside.col(i)).cross(Vector3(state.directions[i].col(0)));
         }
     }
     for (std::size_t q = 0; q < grid_.quads.size(); ++q) {

@@ -76,10 +76,9 @@ int TriangleTree::build(int begin, int end) {
         return triangles_[t][0][axis] + triangles_[t][1][axis] + triangles_[t][2][axis];
     };
     const int middle = (begin + end) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                     [&](int a, int b) {
-                         return std::pair(centre(a), a) < std::pair(centre(b), b);
-                     });
+    std::nth_element(
+        order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+        [&](int a, int b) { return std::pair(centre(a), a) < std::pair(centre(b), b); });
     const int left = build(begin, middle);
     const int right = build(middle, end);
     boxes_[number].left = left;

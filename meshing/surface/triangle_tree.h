@@ -20,8 +20,7 @@ struct NearestPlace {
 /// Weights of the place of a triangle that is nearest to a point.
 ///
 /// Source: [Ericson05] 5.1.5.
-[[nodiscard]] Vector3 nearest_weights(const Vector3& point,
-                                      const std::array<Vector3, 3>& triangle);
+[[nodiscard]] Vector3 nearest_weights(const Vector3& point, const std::array<Vector3, 3>& triangle);
 
 /// A tree of boxes over triangles in space that answers which place is nearest to a point. Of
 /// equally near triangles that with the smaller number is taken.

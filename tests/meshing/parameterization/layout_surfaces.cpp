@@ -124,8 +124,9 @@ LaidOutSurface lay_out(const TriangleSoup& soup, const std::vector<std::array<in
                   is_feature);
 }
 
-LaidOutSurface make_cube_layout(int n, const std::function<Vector3(const Vector3&)>& move,
-                                const std::function<bool(const std::vector<Vector3>&)>& is_feature) {
+LaidOutSurface make_cube_layout(
+    int n, const std::function<Vector3(const Vector3&)>& move,
+    const std::function<bool(const std::vector<Vector3>&)>& is_feature) {
     TriangleSoup soup = make_cube(n);
     std::vector<int> nodes(8, -1);
     for (std::size_t v = 0; v < soup.points.size(); ++v) {
@@ -135,14 +136,9 @@ LaidOutSurface make_cube_layout(int n, const std::function<Vector3(const Vector3
         }
     }
     // Paths on the cube, where edges are straight.
-    LaidOutSurface result = lay_out(soup,
-                                    {{0, 2, 3, 1},
-                                     {4, 5, 7, 6},
-                                     {0, 1, 5, 4},
-                                     {1, 3, 7, 5},
-                                     {3, 2, 6, 7},
-                                     {2, 0, 4, 6}},
-                                    nodes, is_feature);
+    LaidOutSurface result = lay_out(
+        soup, {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}},
+        nodes, is_feature);
     for (const VertexHandle v : result.mesh.vertices()) {
         const Vector3 p = 2.0 * result.mesh.point(v) - Vector3::Ones();
         result.mesh.set_point(v, move(p));
@@ -184,8 +180,7 @@ LaidOutSurface make_torus_layout(int m, const std::vector<int>& sections,
         for (int k = 0; k < 4; ++k) {
             nodes.push_back(vertex(sections[s], k * m + turns[s]));
             const int next = (s + 1) % n_sections;
-            quads.push_back(
-                {4 * s + k, 4 * next + k, 4 * next + (k + 1) % 4, 4 * s + (k + 1) % 4});
+            quads.push_back({4 * s + k, 4 * next + k, 4 * next + (k + 1) % 4, 4 * s + (k + 1) % 4});
         }
     }
     QuadLayout layout(4 * n_sections, quads);
