@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "iga/core/error.h"
-#include "layout_surfaces.h"
 #include "meshing/parameterization/map_samples.h"
 #include "meshing/parameterization/sample_grid.h"
 #include "meshing/parameterization/sheet_sizes.h"
 #include "meshing/parameterization/symmetric_dirichlet.h"
+#include "tests/meshing/parameterization/layout_surfaces.h"
 
 using namespace couture;
 using namespace couture::meshing;

@@ -1,4 +1,4 @@
-#include "layout_surfaces.h"
+#include "tests/meshing/parameterization/layout_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <numbers>
 #include <queue>
 
-#include "../surface/surface_samples.h"
 #include "iga/core/error.h"
 #include "meshing/parameterization/layout_map.h"
+#include "tests/meshing/surface/surface_samples.h"
 
 namespace couture::meshing {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "iga/core/error.h"
-#include "layout_surfaces.h"
 #include "meshing/parameterization/map_samples.h"
 #include "meshing/parameterization/sample_grid.h"
 #include "meshing/parameterization/sample_quality.h"
+#include "tests/meshing/parameterization/layout_surfaces.h"
 
 using namespace couture;
 using namespace couture::meshing;
