@@ -101,16 +101,33 @@ RawSurface read_obj(const std::string& file, std::string_view bytes) {
     return surface;
 }
 
-void write_obj(const std::filesystem::path& path, const meshing::TriangleSoup& soup,
-               const std::string& provenance) {
+namespace {
+
+template <std::size_t n>
+std::string obj_text(const std::vector<Vector3>& points,
+                     const std::vector<std::array<int, n>>& faces, const std::string& provenance) {
     std::string text = provenance.empty() ? "" : "# " + provenance + "\n";
-    for (const Vector3& p : soup.points) {
+    for (const Vector3& p : points) {
         text += fmt::format("v {} {} {}\n", exact(p.x()), exact(p.y()), exact(p.z()));
     }
-    for (const auto& [a, b, c] : soup.triangles) {
-        text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+    for (const auto& face : faces) {
+        text += "f";
+        for (const int vertex : face) text += fmt::format(" {}", vertex + 1);
+        text += "\n";
     }
-    write_text(path, text);
+    return text;
+}
+
+}  // namespace
+
+void write_obj(const std::filesystem::path& path, const meshing::TriangleSoup& soup,
+               const std::string& provenance) {
+    write_text(path, obj_text(soup.points, soup.triangles, provenance));
+}
+
+void write_obj(const std::filesystem::path& path, const meshing::QuadMesh& quads,
+               const std::string& provenance) {
+    write_text(path, obj_text(quads.points, quads.quads, provenance));
 }
 
 }  // namespace couture::io

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "io/raw_surface.h"
+#include "meshing/surface/quad_grid.h"
 
 namespace couture::io {
 
@@ -18,6 +19,10 @@ namespace couture::io {
 ///
 /// @throws FileError  if it can't be written
 void write_obj(const std::filesystem::path& path, const meshing::TriangleSoup& soup,
+               const std::string& provenance);
+
+/// The same for a quad mesh.
+void write_obj(const std::filesystem::path& path, const meshing::QuadMesh& quads,
                const std::string& provenance);
 
 }  // namespace couture::io

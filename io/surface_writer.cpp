@@ -49,6 +49,48 @@ void add_array(vtkFieldData& data, const SurfaceArray& array, vtkIdType n_rows, 
     data.AddArray(column);
 }
 
+template <int n>
+void add_cells(vtkCellArray& cells, const std::vector<std::array<int, n>>& numbers,
+               vtkIdType n_points) {
+    for (const auto& cell : numbers) {
+        const auto [low, high] = std::minmax_element(cell.begin(), cell.end());
+        if (*low < 0 || *high >= n_points) {
+            throw InputError("write_vtp: a {} has vertex {}; there are {} points",
+                             n == 3 ? "triangle" : "quad", *low < 0 ? *low : *high, n_points);
+        }
+        std::array<vtkIdType, n> ids{};
+        std::copy(cell.begin(), cell.end(), ids.begin());
+        cells.InsertNextCell(n, ids.data());
+    }
+}
+
+void write_polydata(const std::filesystem::path& path, vtkPolyData& data,
+                    const std::string& provenance) {
+    if (!provenance.empty()) {
+        vtkNew<vtkStringArray> text;
+        text->SetName("provenance");
+        text->InsertNextValue(provenance);
+        data.GetFieldData()->AddArray(text);
+    }
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        // Tried first because VTK does not pass the system's reason on.
+        if (!std::ofstream(temporary)) {
+            throw FileError("{}: can't be written: {}", path.string(), std::strerror(errno));
+        }
+        const VtkMessages messages;
+        vtkNew<vtkXMLPolyDataWriter> writer;
+        writer->SetFileName(temporary.c_str());
+        writer->SetInputData(&data);
+        writer->SetDataModeToAppended();
+        writer->EncodeAppendedDataOff();
+        writer->SetCompressorTypeToZLib();
+        writer->SetHeaderTypeToUInt64();
+        if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
+            throw FileError("{}: can't be written: {}", path.string(), messages.first());
+        }
+    });
+}
+
 }  // namespace
 
 void write_vtp(const std::filesystem::path& path, const meshing::TriangleSoup& surface,
@@ -65,15 +107,7 @@ void write_vtp(const std::filesystem::path& path, const meshing::TriangleSoup& s
     for (vtkIdType i = 0; i < n_points; ++i) points->SetPoint(i, surface.points[i].data());
 
     vtkNew<vtkCellArray> triangles;
-    for (const auto& triangle : surface.triangles) {
-        const auto [low, high] = std::minmax_element(triangle.begin(), triangle.end());
-        if (*low < 0 || *high >= n_points) {
-            throw InputError("write_vtp: a triangle has vertex {}; there are {} points",
-                             *low < 0 ? *low : *high, n_points);
-        }
-        const vtkIdType ids[3] = {triangle[0], triangle[1], triangle[2]};
-        triangles->InsertNextCell(3, ids);
-    }
+    add_cells<3>(*triangles, surface.triangles, n_points);
 
     // Lines come before triangles in PolyData's order of cells.
     const auto n_lines = static_cast<vtkIdType>(lines.size());
@@ -114,29 +148,20 @@ void write_vtp(const std::filesystem::path& path, const meshing::TriangleSoup& s
     for (const SurfaceArray& array : on_triangles) {
         add_array(*data->GetCellData(), array, n_triangles, n_lines, 0, "triangles");
     }
-    if (!provenance.empty()) {
-        vtkNew<vtkStringArray> text;
-        text->SetName("provenance");
-        text->InsertNextValue(provenance);
-        data->GetFieldData()->AddArray(text);
-    }
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        // Tried first because VTK does not pass the system's reason on.
-        if (!std::ofstream(temporary)) {
-            throw FileError("{}: can't be written: {}", path.string(), std::strerror(errno));
-        }
-        const VtkMessages messages;
-        vtkNew<vtkXMLPolyDataWriter> writer;
-        writer->SetFileName(temporary.c_str());
-        writer->SetInputData(data);
-        writer->SetDataModeToAppended();
-        writer->EncodeAppendedDataOff();
-        writer->SetCompressorTypeToZLib();
-        writer->SetHeaderTypeToUInt64();
-        if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-            throw FileError("{}: can't be written: {}", path.string(), messages.first());
-        }
-    });
+    write_polydata(path, *data, provenance);
+}
+
+void write_vtp(const std::filesystem::path& path, const meshing::QuadMesh& quads,
+               const std::string& provenance) {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Vector3& point : quads.points) points->InsertNextPoint(point.data());
+    vtkNew<vtkCellArray> cells;
+    add_cells<4>(*cells, quads.quads, points->GetNumberOfPoints());
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    write_polydata(path, *data, provenance);
 }
 
 }  // namespace couture::io

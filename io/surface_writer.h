@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "iga/core/types.h"
+#include "meshing/surface/quad_grid.h"
 #include "meshing/surface/surface_mesh.h"
 
 namespace couture::io {
@@ -39,5 +40,9 @@ void write_vtp(const std::filesystem::path& path, const meshing::TriangleSoup& s
                std::span<const SurfaceArray> on_points = {},
                std::span<const SurfaceArray> on_triangles = {},
                std::span<const SurfaceLine> lines = {}, const std::string& provenance = "");
+
+/// The same for a quad mesh.
+void write_vtp(const std::filesystem::path& path, const meshing::QuadMesh& quads,
+               const std::string& provenance = "");
 
 }  // namespace couture::io

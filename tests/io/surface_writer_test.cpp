@@ -10,8 +10,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "iga/core/error.h"
+#include "io/obj_surface.h"
 
 using namespace couture;
 
@@ -71,4 +73,26 @@ TEST_CASE("write_vtp: what does not fit is refused", "[io]") {
     CHECK_THROWS_WITH(io::write_vtp(path, broken), Catch::Contains("vertex 9"));
     CHECK_THROWS_AS(io::write_vtp("/dev/null/x.vtp", square), FileError);
     CHECK_FALSE(std::filesystem::exists(path));
+}
+
+TEST_CASE("write_vtp and write_obj: quads can be read again", "[io]") {
+    const meshing::QuadMesh quads{.points = square.points, .quads = {{0, 1, 2, 3}}};
+    const std::filesystem::path path = temporary_file();
+    io::write_vtp(path, quads, "from a test");
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    REQUIRE(reader->GetOutput()->GetNumberOfPolys() == 1);
+    CHECK(reader->GetOutput()->GetCell(0)->GetNumberOfPoints() == 4);
+    CHECK(reader->GetOutput()->GetCell(0)->GetPointId(2) == 2);
+    std::filesystem::remove(path);
+
+    const std::filesystem::path obj = path.parent_path() / "couture_surface_writer_test.obj";
+    io::write_obj(obj, quads, "from a test");
+    std::ifstream stream(obj);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    CHECK(text.find("f 1 2 3 4\n") != std::string::npos);
+    std::filesystem::remove(obj);
+    CHECK_THROWS_AS(io::write_vtp(path, meshing::QuadMesh{square.points, {{0, 1, 2, 4}}}),
+                    InputError);
 }

@@ -1,0 +1,87 @@
+#include "meshing/parameterization/newton_system.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+
+#include "iga/core/error.h"
+
+namespace couture::meshing {
+
+struct NewtonSystem::Factor {
+    Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> cholesky;
+};
+
+NewtonSystem::NewtonSystem(int n_unknowns, std::vector<Element> elements)
+    : elements_(std::move(elements)),
+      gradient_(VectorX::Zero(n_unknowns)),
+      matrix_(n_unknowns, n_unknowns),
+      factor_(std::make_unique<Factor>()) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < n_unknowns; ++i) entries.emplace_back(i, i, 0.0);
+    for (const Element& element : elements_) {
+        for (const int row : element) {
+            for (const int column : element) {
+                if (column >= 0 && row >= column) entries.emplace_back(row, column, 0.0);
+            }
+        }
+    }
+    matrix_.setFromTriplets(entries.begin(), entries.end());
+    const auto* begin = matrix_.outerIndexPtr();
+    const auto* rows = matrix_.innerIndexPtr();
+    for (const Element& element : elements_) {
+        std::array<int, 36>& places = places_.emplace_back();
+        for (int i = 0; i < 6; ++i) {
+            for (int j = 0; j < 6; ++j) {
+                const int row = element[i];
+                const int column = element[j];
+                const bool is_stored = column >= 0 && row >= column;
+                places[6 * i + j] =
+                    is_stored ? static_cast<int>(std::lower_bound(rows + begin[column],
+                                                                  rows + begin[column + 1], row) -
+                                                 rows)
+                              : -1;
+            }
+        }
+    }
+    factor_->cholesky.analyzePattern(matrix_);
+}
+
+NewtonSystem::NewtonSystem(NewtonSystem&&) noexcept = default;
+NewtonSystem& NewtonSystem::operator=(NewtonSystem&&) noexcept = default;
+NewtonSystem::~NewtonSystem() = default;
+
+void NewtonSystem::set_zero() {
+    gradient_.setZero();
+    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+}
+
+void NewtonSystem::add(int element, const Vector<6>& gradient, const Matrix<6>& hessian) {
+    double* values = matrix_.valuePtr();
+    for (int i = 0; i < 6; ++i) {
+        if (elements_[element][i] >= 0) gradient_[elements_[element][i]] += gradient[i];
+        for (int j = 0; j < 6; ++j) {
+            const int place = places_[element][6 * i + j];
+            if (place >= 0) values[place] += hessian(i, j);
+        }
+    }
+}
+
+VectorX NewtonSystem::step() {
+    if (gradient_.size() == 0) return gradient_;
+    constexpr double regularization = 1e-12;
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < matrix_.cols(); ++i) {
+        largest = std::max(largest, matrix_.valuePtr()[matrix_.outerIndexPtr()[i]]);
+    }
+    factor_->cholesky.setShift(regularization * largest);
+    factor_->cholesky.factorize(matrix_);
+    if (factor_->cholesky.info() != Eigen::Success) {
+        throw SolverError(
+            "NewtonSystem: the Hessian of {} unknowns is not positive definite; its largest "
+            "diagonal entry is {}",
+            gradient_.size(), largest);
+    }
+    return factor_->cholesky.solve(-gradient_);
+}
+
+}  // namespace couture::meshing

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "meshing/layout/embedded_layout.h"
+#include "meshing/layout/layout_samples.h"
+
+namespace couture::meshing {
+
+struct NodeRelocationOptions {
+    /// Wanted length of a cell next to that of the others, for each sheet; empty: all the same.
+    std::vector<double> cell_lengths;
+    int max_iterations = 60;
+    /// It ends when a step lowers the energy by less than this part of it.
+    double tolerance = 1e-5;
+};
+
+struct NodeRelocationReport {
+    /// Of the start and after each step; 1 where all cells are squares of one size.
+    std::vector<double> energies;
+    bool is_converged = false;
+    /// Corners of cells that turn the wrong way against the surface at the start and in the end; if
+    /// some are left in the end, nothing has been moved.
+    int n_inverted_at_start = 0;
+    int n_inverted = 0;
+    /// How far the nodes went.
+    double largest_move = 0.0;
+};
+
+struct RelocatedSamples {
+    LayoutSamples samples;
+    NodeRelocationReport report;
+};
+
+/// Moves all points of a layout's grid, its nodes among them, on the surface that they sample:
+/// minimises the mean over all corners of cells of the symmetric Dirichlet energy of the map from
+/// the wanted cell to the surface's tangent plane. Corner nodes stay, feature and boundary arcs'
+/// points slide along their curve, others on their smooth region; each step is put back onto the
+/// surface and taken only if the energy falls, with all corners the right way round.
+///
+/// Source: [Maquart19] 4.2.2.2 and C.2 for its purpose. Differs: there one node at a time moves in
+/// the polar map of its triangles along the gradient of the energy, the surface being triangulated
+/// anew around it; here nodes and the grid move at once by Newton's method, on the surface as it
+/// is.
+///
+/// @throws InputError  if sizes don't match
+[[nodiscard]] RelocatedSamples relocate_nodes(const SurfaceMesh& mesh,
+                                              const EmbeddedLayout& embedding,
+                                              const LayoutSamples& samples,
+                                              const NodeRelocationOptions& options = {});
+
+/// The grid with each cell divided into n x n: bilinear, put back onto the surface.
+///
+/// @throws InputError  for less than one part
+[[nodiscard]] LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
+                                           const LayoutSamples& samples, int n);
+
+}  // namespace couture::meshing

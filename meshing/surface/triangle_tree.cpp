@@ -1,0 +1,121 @@
+#include "meshing/surface/triangle_tree.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "iga/core/error.h"
+
+namespace couture::meshing {
+
+namespace {
+
+double squared_distance(const Vector3& point, const Vector3& low, const Vector3& high) {
+    return (point - point.cwiseMax(low).cwiseMin(high)).squaredNorm();
+}
+
+// Fraction of the way from a to b that is nearest.
+double nearest_fraction(const Vector3& point, const Vector3& a, const Vector3& b) {
+    const double length = (b - a).squaredNorm();
+    return length > 0.0 ? std::clamp((point - a).dot(b - a) / length, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
+Vector3 nearest_weights(const Vector3& point, const std::array<Vector3, 3>& triangle) {
+    const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    const double area = normal.squaredNorm();
+    Vector3 inside = Vector3::Constant(-1.0);
+    for (int k = 0; k < 3 && area > 0.0; ++k) {
+        const Vector3& a = triangle[(k + 1) % 3];
+        const Vector3& b = triangle[(k + 2) % 3];
+        inside[k] = (b - a).cross(point - a).dot(normal) / area;
+    }
+    if (inside.minCoeff() >= 0.0) return inside / inside.sum();
+    Vector3 best = Vector3::Zero();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3;
+        const double t = nearest_fraction(point, triangle[k], triangle[next]);
+        const double distance =
+            ((1.0 - t) * triangle[k] + t * triangle[next] - point).squaredNorm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        best = Vector3::Zero();
+        best[k] = 1.0 - t;
+        best[next] = t;
+    }
+    return best;
+}
+
+TriangleTree::TriangleTree(std::vector<std::array<Vector3, 3>> triangles)
+    : triangles_(std::move(triangles)), order_(triangles_.size()) {
+    if (triangles_.empty()) {
+        throw InputError("TriangleTree: there are no triangles; give one or more");
+    }
+    std::iota(order_.begin(), order_.end(), 0);
+    build(0, static_cast<int>(order_.size()));
+}
+
+int TriangleTree::build(int begin, int end) {
+    Box box{triangles_[order_[begin]][0], triangles_[order_[begin]][0], begin, end};
+    for (int i = begin; i < end; ++i) {
+        for (const Vector3& corner : triangles_[order_[i]]) {
+            box.low = box.low.cwiseMin(corner);
+            box.high = box.high.cwiseMax(corner);
+        }
+    }
+    const int number = static_cast<int>(boxes_.size());
+    boxes_.push_back(box);
+    constexpr int leaf_size = 4;
+    if (end - begin <= leaf_size) return number;
+    int axis = 0;
+    (box.high - box.low).maxCoeff(&axis);
+    const auto centre = [&](int t) {
+        return triangles_[t][0][axis] + triangles_[t][1][axis] + triangles_[t][2][axis];
+    };
+    const int middle = (begin + end) / 2;
+    std::nth_element(
+        order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+        [&](int a, int b) { return std::pair(centre(a), a) < std::pair(centre(b), b); });
+    const int left = build(begin, middle);
+    const int right = build(middle, end);
+    boxes_[number].left = left;
+    boxes_[number].right = right;
+    return number;
+}
+
+void TriangleTree::search(int number, const Vector3& point, NearestPlace& best) const {
+    const Box& box = boxes_[number];
+    if (squared_distance(point, box.low, box.high) > best.squared_distance) return;
+    if (box.left < 0) {
+        for (int i = box.begin; i < box.end; ++i) {
+            const auto& triangle = triangles_[order_[i]];
+            const Vector3 weights = nearest_weights(point, triangle);
+            const Vector3 place =
+                weights[0] * triangle[0] + weights[1] * triangle[1] + weights[2] * triangle[2];
+            const double distance = (place - point).squaredNorm();
+            if (distance < best.squared_distance ||
+                (distance == best.squared_distance && order_[i] < best.triangle)) {
+                best = {order_[i], weights, place, distance};
+            }
+        }
+        return;
+    }
+    const auto distance_of = [&](int below) {
+        return squared_distance(point, boxes_[below].low, boxes_[below].high);
+    };
+    const bool is_left_nearer = distance_of(box.left) <= distance_of(box.right);
+    search(is_left_nearer ? box.left : box.right, point, best);
+    search(is_left_nearer ? box.right : box.left, point, best);
+}
+
+NearestPlace TriangleTree::nearest(const Vector3& point) const {
+    NearestPlace best;
+    best.squared_distance = std::numeric_limits<double>::infinity();
+    search(0, point, best);
+    return best;
+}
+
+}  // namespace couture::meshing

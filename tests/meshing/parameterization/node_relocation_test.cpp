@@ -1,0 +1,97 @@
+#include "meshing/parameterization/node_relocation.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "iga/core/error.h"
+#include "meshing/parameterization/map_samples.h"
+#include "meshing/parameterization/sample_grid.h"
+#include "meshing/parameterization/sample_quality.h"
+#include "tests/meshing/parameterization/layout_surfaces.h"
+
+using namespace couture;
+using namespace couture::meshing;
+
+namespace {
+
+LayoutSamples samples_of(const LaidOutSurface& surface, int n_cells) {
+    const std::vector<int> cells(surface.embedding.layout.n_arcs(), n_cells);
+    return sample_layout_map(surface.mesh, surface.embedding,
+                             make_layout_map(surface.mesh, surface.embedding, cells));
+}
+
+}  // namespace
+
+TEST_CASE("relocate nodes: a cube off the centre of a sphere becomes even", "[parameterization]") {
+    const LaidOutSurface sphere = make_sphere_layout(14, {0.4, 0.3, 0.5});
+    const LayoutSamples start = samples_of(sphere, 6);
+    const RelocatedSamples moved = relocate_nodes(sphere.mesh, sphere.embedding, start);
+    CHECK(moved.report.is_converged);
+    CHECK(moved.report.n_inverted == 0);
+    CHECK(moved.report.largest_move > 0.5);
+    const QuadQuality before = quad_quality(to_quad_mesh(start), sphere.mesh);
+    const QuadQuality after = quad_quality(to_quad_mesh(moved.samples), sphere.mesh);
+    // The cube's own angles at a corner are 120 degrees, whose sine is 0.866.
+    CHECK(before.smallest_scaled_jacobian < 0.2);
+    CHECK(after.smallest_scaled_jacobian > 0.78);
+    CHECK(after.mean_scaled_jacobian > 0.9);
+    // Nodes at the corners of a cube in the sphere.
+    for (const MatrixX& arc : moved.samples.arcs) {
+        CHECK((arc.col(0) - arc.rightCols(1)).norm() == Approx(2.0 / std::sqrt(3.0)).epsilon(0.03));
+    }
+}
+
+TEST_CASE("relocate nodes: corners stay, features keep their points", "[parameterization]") {
+    const LaidOutSurface can = make_can_layout(12, 0.7);
+    const LayoutSamples start = samples_of(can, 5);
+    const RelocatedSamples moved = relocate_nodes(can.mesh, can.embedding, start);
+    CHECK(moved.report.energies.back() < moved.report.energies.front());
+    double twist = 0.0;
+    double twist_at_start = 0.0;
+    for (int a = 0; a < can.embedding.layout.n_arcs(); ++a) {
+        const MatrixX& arc = moved.samples.arcs[a];
+        if (can.embedding.is_feature_arc[a]) {
+            for (int i = 0; i < arc.cols(); ++i) {
+                CHECK(std::abs(arc(2, i)) == Approx(1.0).margin(1e-12));
+                CHECK(arc.col(i).head<2>().norm() > 0.98);
+            }
+        } else {
+            const auto turn = [](const MatrixX& upright) {
+                const Vector2 a_end = upright.col(0).head<2>();
+                const Vector2 b_end = upright.rightCols(1).topRows(2);
+                return (a_end - b_end).norm();
+            };
+            twist = std::max(twist, turn(arc));
+            twist_at_start = std::max(twist_at_start, turn(start.arcs[a]));
+        }
+    }
+    CHECK(twist_at_start > 0.6);
+    CHECK(twist < 0.1);
+
+    const LaidOutSurface cube = make_cube_layout(
+        4, [](const Vector3& p) { return p; }, [](const auto&) { return true; });
+    const LayoutSamples flat = samples_of(cube, 4);
+    const RelocatedSamples same = relocate_nodes(cube.mesh, cube.embedding, flat);
+    CHECK(same.report.energies.back() == Approx(1.0).margin(1e-9));
+    CHECK(same.report.largest_move == 0.0);
+    const QuadQuality quality = quad_quality(to_quad_mesh(same.samples), cube.mesh);
+    CHECK(quality.smallest_scaled_jacobian == Approx(1.0).margin(1e-5));
+    CHECK(quality.largest_edge_ratio == Approx(1.0).margin(1e-5));
+    CHECK(quality.hausdorff_distance < 1e-9);
+}
+
+TEST_CASE("refine samples: points stay on the surface, coarse ones where they were",
+          "[parameterization]") {
+    const LaidOutSurface sphere = make_sphere_layout(10, Vector3::Zero());
+    const LayoutSamples coarse = samples_of(sphere, 3);
+    const LayoutSamples fine = refine_samples(sphere.mesh, sphere.embedding, coarse, 3);
+    CHECK(fine.n_cells.front() == 9);
+    for (std::size_t q = 0; q < fine.quads.size(); ++q) {
+        CHECK((fine.quads[q].col(3 * 10 + 3) - coarse.quads[q].col(4 + 1)).norm() < 1e-12);
+    }
+    // Chords of the sphere sag by less than its facets and no more.
+    const QuadQuality quality = quad_quality(to_quad_mesh(fine), sphere.mesh);
+    CHECK(quality.hausdorff_distance < 0.01);
+    CHECK(quality.smallest_scaled_jacobian > 0.7);
+    CHECK_THROWS_AS(refine_samples(sphere.mesh, sphere.embedding, coarse, 0), InputError);
+}
