@@ -54,8 +54,12 @@ class ShapeEnergy {
   public:
     /// @param geometry  spaces and weights; its points choose the corners left out
     /// @param orientations  of the patches, +1 or -1
+    /// @param boxes  for each patch the proportions of the box that its elements tend to in place
+    /// of
+    ///               a cube (the mean ratio is that of the map from the box of volume 1; shape
+    ///               ratios remain those of cubes); empty: cubes
     ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
-                const std::vector<int>& orientations);
+                const std::vector<int>& orientations, const std::vector<Vector3>& boxes = {});
 
     /// @param points  control points, 3 x n_dofs
     [[nodiscard]] double value(const MatrixX& points, const ShapeMeasure& measure) const;
