@@ -61,7 +61,8 @@ class Parameterizer {
           options_(options),
           dofs_(iga::make_dof_map<3>(start, spaces_of(start))),
           points_(points_of(start, dofs_)),
-          energy_(start, dofs_, std::vector<int>(start.patches.size(), 1), boxes_of(start)),
+          energy_(start, dofs_, std::vector<int>(start.patches.size(), 1), boxes_of(start), 0),
+          judge_(start, dofs_, std::vector<int>(start.patches.size(), 1), boxes_of(start)),
           descent_(energy_),
           tangents_(dofs_.n_dofs) {
         for (const auto& side : start.outer_sides()) {
@@ -111,7 +112,7 @@ class Parameterizer {
 
     // Records the present state; its smallest scaled Jacobian.
     double keep() {
-        const ShapeSummary summary = energy_.summary(points_);
+        const ShapeSummary summary = judge_.summary(points_);
         min_inverse_mean_ratio_ = summary.min_inverse_mean_ratio;
         states_.push_back({points_, summary.min_scaled_jacobian});
         return summary.min_scaled_jacobian;
@@ -172,7 +173,9 @@ class Parameterizer {
     const ParameterizationOptions& options_;
     iga::DofMap dofs_;
     MatrixX points_;
+    /// At few points, for speed; and at all, for what is kept.
     ShapeEnergy energy_;
+    ShapeEnergy judge_;
     ShapeDescent descent_;
     TangentFrames tangents_;
     std::vector<State> states_;

@@ -335,7 +335,8 @@ class ShapeEnergy::Element {
 };
 
 ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
-                         const std::vector<int>& orientations, const std::vector<Vector3>& boxes)
+                         const std::vector<int>& orientations, const std::vector<Vector3>& boxes,
+                         int n_more_points)
     : n_dofs_(dofs.n_dofs) {
     MatrixX start(3, n_dofs_);
     for (int p = 0; p < geometry.n_patches(); ++p) {
@@ -355,7 +356,8 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
             data.breakpoints[k] = knots.breakpoints();
             n_elements *= knots.n_elements();
             const std::array<std::vector<double>, 2> samples{
-                std::vector<double>{0.0, 1.0}, iga::gauss_rule(knots.degree() + 1).points};
+                std::vector<double>{0.0, 1.0},
+                iga::gauss_rule(knots.degree() + n_more_points).points};
             for (int kind = 0; kind < 2; ++kind) {
                 iga::BasisTable table = tabulate(knots, data.breakpoints[k], samples[kind]);
                 const std::size_t per_element = table.derivatives.size() / knots.n_elements();
