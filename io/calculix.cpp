@@ -57,6 +57,29 @@ std::string upper(std::string name) {
     return name;
 }
 
+std::string mesh_text(const HexMesh& mesh, const std::string& title, bool is_reduced) {
+    const bool is_quadratic = mesh.elements.cols() == 20;
+    std::string text = fmt::format("*HEADING\n{}\n*NODE, NSET=ALL_NODES\n", title);
+    for (long i = 0; i < mesh.nodes.rows(); ++i) {
+        text += fmt::format("{}, {}, {}, {}\n", i + 1, number(mesh.nodes(i, 0)),
+                            number(mesh.nodes(i, 1)), number(mesh.nodes(i, 2)));
+    }
+    text += fmt::format("*ELEMENT, TYPE=C3D{}{}, ELSET=ALL_ELEMENTS\n", is_quadratic ? 20 : 8,
+                        is_quadratic && is_reduced ? "R" : "");
+    for (long e = 0; e < mesh.elements.rows(); ++e) {
+        std::vector<int> line = {static_cast<int>(e)};
+        for (const int node : mesh.elements.row(e)) {
+            line.push_back(node);
+        }
+        append_numbers(text, line);
+    }
+    for (const auto& [name, nodes] : mesh.node_sets) {
+        text += fmt::format("*NSET, NSET={}\n", upper(name));
+        append_numbers(text, nodes);
+    }
+    return text;
+}
+
 }  // namespace
 
 CalculixModel make_calculix_model(const SpacePtr<3>& space, const Problem& problem) {
@@ -109,25 +132,7 @@ std::string to_calculix(const CalculixModel& model, const std::string& title) {
         throw InputError("calculix: the material is not neo_hookean; no other energy is written");
     }
     const HexMesh& mesh = model.mesh;
-    const bool is_quadratic = mesh.elements.cols() == 20;
-    std::string text = fmt::format("*HEADING\n{}\n*NODE, NSET=ALL_NODES\n", title);
-    for (long i = 0; i < mesh.nodes.rows(); ++i) {
-        text += fmt::format("{}, {}, {}, {}\n", i + 1, number(mesh.nodes(i, 0)),
-                            number(mesh.nodes(i, 1)), number(mesh.nodes(i, 2)));
-    }
-    text += fmt::format("*ELEMENT, TYPE=C3D{}{}, ELSET=ALL_ELEMENTS\n", is_quadratic ? 20 : 8,
-                        is_quadratic && model.is_reduced ? "R" : "");
-    for (long e = 0; e < mesh.elements.rows(); ++e) {
-        std::vector<int> line = {static_cast<int>(e)};
-        for (const int node : mesh.elements.row(e)) {
-            line.push_back(node);
-        }
-        append_numbers(text, line);
-    }
-    for (const auto& [name, nodes] : mesh.node_sets) {
-        text += fmt::format("*NSET, NSET={}\n", upper(name));
-        append_numbers(text, nodes);
-    }
+    std::string text = mesh_text(mesh, title, model.is_reduced);
     text += fmt::format(
         "*MATERIAL, NAME=RUBBER\n*HYPERELASTIC, NEO HOOKE\n{}, {}\n"
         "*SOLID SECTION, ELSET=ALL_ELEMENTS, MATERIAL=RUBBER\n",
@@ -146,6 +151,10 @@ std::string to_calculix(const CalculixModel& model, const std::string& title) {
         "*EL PRINT, ELSET=ALL_ELEMENTS, FREQUENCY=10000\nS\n"
         "*END STEP\n";
     return text;
+}
+
+std::string to_calculix(const HexMesh& mesh, const std::string& title) {
+    return mesh_text(mesh, title, false);
 }
 
 }  // namespace couture::io

@@ -44,4 +44,8 @@ struct CalculixModel {
 /// @throws InputError  for nodes that don't exist, or another stored energy
 [[nodiscard]] std::string to_calculix(const CalculixModel& model, const std::string& title);
 
+/// A mesh alone: nodes, elements, and boundary sets as sets of nodes; names in capitals, what is
+/// no letter or digit as an underscore.
+[[nodiscard]] std::string to_calculix(const HexMesh& mesh, const std::string& title);
+
 }  // namespace couture::io

@@ -1,6 +1,7 @@
 #include "io/spline_file.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "iga/core/error.h"
@@ -164,9 +165,8 @@ void complete(const std::string& file, iga::MultiPatch<d>& multipatch, bool list
     }
 }
 
-}  // namespace
-
-SplineFile read_splines(const std::filesystem::path& path) {
+/// The splines as the file says them.
+std::pair<RawSplines, Format> read_raw(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     const std::string file = path.string();
     const Format format = format_of(path, text);
@@ -188,10 +188,33 @@ SplineFile read_splines(const std::filesystem::path& path) {
             raw = read_hdf5(file, text);
             break;
     }
+    return {std::move(raw), format};
+}
+
+}  // namespace
+
+SplineFile read_splines(const std::filesystem::path& path) {
+    auto [raw, format] = read_raw(path);
+    const std::string file = path.string();
     std::visit(
         [&](auto& multipatch) { complete(file, multipatch, raw.lists_interfaces, raw.notes); },
         raw.multipatch);
     return {std::move(raw.multipatch), name_of(format), std::move(raw.notes)};
+}
+
+std::vector<iga::Surface> read_spline_surfaces(const std::filesystem::path& path) {
+    RawSplines raw = read_raw(path).first;
+    const auto* surfaces = std::get_if<iga::MultiPatch<2>>(&raw.multipatch);
+    if (surfaces == nullptr || surfaces->dimension() != 3) {
+        throw FileError("{}: holds {}; expected surfaces in space", path.string(),
+                        surfaces == nullptr ? "volumes" : "surfaces in the plane");
+    }
+    return surfaces->patches;
+}
+
+bool is_spline_file(const std::filesystem::path& path) {
+    constexpr std::array<const char*, 5> extensions{".xml", ".mesh", ".txt", ".inp", ".h5"};
+    return std::ranges::find(extensions, lower_extension(path)) != extensions.end();
 }
 
 void write_splines(const std::filesystem::path& path, const AnyMultiPatch& multipatch) {

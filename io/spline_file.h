@@ -26,6 +26,15 @@ struct SplineFile {
 /// @throws FileError  naming file, line, what was found and what was expected
 [[nodiscard]] SplineFile read_splines(const std::filesystem::path& path);
 
+/// The surfaces in space of a file, as they are: interfaces are neither read nor found, borders
+/// may be shared by many.
+///
+/// @throws FileError  as read_splines, and for volumes or surfaces in the plane
+[[nodiscard]] std::vector<iga::Surface> read_spline_surfaces(const std::filesystem::path& path);
+
+/// Whether the extension is one of splines: .xml, .mesh, .txt, .inp, .h5.
+[[nodiscard]] bool is_spline_file(const std::filesystem::path& path);
+
 /// Writes in the format of the extension (.xml, .mesh, .txt, .inp with .NB beside it, .h5), all
 /// digits kept. The file appears whole or not at all.
 ///

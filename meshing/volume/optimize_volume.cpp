@@ -11,8 +11,8 @@
 #include "iga/core/parallel.h"
 #include "iga/topology/jacobian_certificate.h"
 #include "meshing/volume/boundary_slide.h"
-#include "meshing/volume/lbfgs.h"
-#include "meshing/volume/shape_energy.h"
+#include "meshing/volume/shape_descent.h"
+#include "meshing/volume/volume_points.h"
 
 namespace couture::meshing {
 
@@ -37,46 +37,15 @@ constexpr double first_tolerance = 0.02;
 /// Part of the start's worst scaled Jacobian that must be left: it is often that of the angle
 /// between two faces, and falls a little wherever elements are not at right angles to the edge.
 constexpr double kept_scaled_jacobian = 0.97;
-/// Part of the elements' size that a control point moves per step, that points of curved features
-/// move per round, and below which these are held.
-constexpr double max_step = 0.5;
+/// Part of the elements' size that points of curved features move per round, and below which these
+/// are held.
 constexpr double max_slide = 0.3;
 constexpr double min_slide = 0.01;
-/// Of the first step along the gradient.
-constexpr double first_step = 0.1;
-/// Armijo's condition: the part of the linear decrease asked for.
-constexpr double sufficient_decrease = 1e-4;
-constexpr int max_halvings = 20;
 /// Regularisation of a folded start, halved after each round down to the last.
 constexpr double first_regularization = 0.5;
 constexpr double last_regularization = 1e-3;
 /// A sample counts as unfolded above this inverse mean ratio.
 constexpr double unfolded = 1e-6;
-
-MatrixX points_of(const MultiPatch<3>& volume, const iga::DofMap& dofs) {
-    MatrixX points(3, dofs.n_dofs);
-    // Backwards, so that a shared point is that of its first patch.
-    for (int p = volume.n_patches(); p-- > 0;) {
-        for (std::size_t i = dofs.global[p].size(); i-- > 0;) {
-            points.col(dofs.global[p][i]) = volume.patches[p].control_points().row(i).transpose();
-        }
-    }
-    return points;
-}
-
-MultiPatch<3> with_points(const MultiPatch<3>& volume, const iga::DofMap& dofs,
-                          const MatrixX& points) {
-    MultiPatch<3> result = volume;
-    for (int p = 0; p < volume.n_patches(); ++p) {
-        const iga::Volume& patch = volume.patches[p];
-        MatrixX own(patch.control_points().rows(), 3);
-        for (int i = 0; i < own.rows(); ++i) {
-            own.row(i) = points.col(dofs.global[p][i]).transpose();
-        }
-        result.patches[p] = iga::Volume(patch.space(), std::move(own), patch.weights());
-    }
-    return result;
-}
 
 /// The worst certificate of all patches, or the first that is worse than degenerate.
 iga::Validity validity(const MultiPatch<3>& volume) {
@@ -97,6 +66,7 @@ class Minimizer {
               const BoundaryFeatures& features, const VolumeOptimizationOptions& options,
               double body_size)
         : energy_(energy),
+          descent_(energy),
           slide_(slide),
           features_(features),
           options_(options),
@@ -105,10 +75,8 @@ class Minimizer {
     /// Starts with another measure.
     void start(const MatrixX& points, const ShapeMeasure& measure) {
         points_ = points;
-        measure_ = measure;
         value_ = energy_.value(points, measure);
-        sizes_ = energy_.sizes(points);
-        memory_.clear();
+        descent_.start(points, measure);
         reach_ = max_slide;
     }
 
@@ -122,7 +90,7 @@ class Minimizer {
             if (slide_.has_curved() && options_.slide_boundary && !holds_curved) {
                 moved = slide_.retracted(moved);
             }
-            const double value = energy_.value(moved, measure_);
+            const double value = energy_.value(moved, descent_.measure());
             if (value < value_ && slide_.distance(moved, 1) <= max_distance_) {
                 const double decrease = (value_ - value) / value_;
                 value_ = value;
@@ -133,7 +101,7 @@ class Minimizer {
                 return std::nullopt;
             }
             reach_ *= 0.3;
-            memory_.clear();
+            descent_.forget();
         }
     }
 
@@ -152,89 +120,32 @@ class Minimizer {
     }
 
     /// Largest part of `step` that keeps curved features within reach of where they were.
-    [[nodiscard]] double longest_step(const MatrixX& from, const MatrixX& step) const {
+    [[nodiscard]] double longest_slide(const MatrixX& from, const MatrixX& step) const {
         double result = 1.0;
         for (int i = 0; i < step.cols(); ++i) {
-            const double length = step.col(i).norm();
-            result = std::min(result, max_step * sizes_[i] / length);
             if (slide_.is_curved(i)) {
-                const double left = reach_ * sizes_[i] - (from.col(i) - points_.col(i)).norm();
-                result = std::min(result, std::max(left, 0.0) / length);
+                const double left =
+                    reach_ * descent_.sizes()[i] - (from.col(i) - points_.col(i)).norm();
+                result = std::min(result, std::max(left, 0.0) / step.col(i).norm());
             }
         }
         return result;
     }
 
-    /// Steps of L-BFGS in the tangent space of the boundary, in variables scaled by the elements'
-    /// sizes.
     MatrixX slid(bool holds_curved) {
-        const TangentFrames tangents = frames(holds_curved);
-        const auto scaled_gradient = [&](MatrixX gradient) {
-            tangents.project(gradient);
-            gradient *= sizes_.asDiagonal();
-            return gradient;
-        };
-        MatrixX points = points_;
-        EnergyGradient here = energy_.with_gradient(points, measure_);
-        MatrixX gradient = scaled_gradient(std::move(here.gradient));
-        for (int i = 0; i < options_.steps_per_round; ++i) {
-            MatrixX step = direction(gradient, tangents);
-            double slope = step.cwiseProduct(gradient).sum();
-            if (!(slope < 0.0)) {
-                memory_.clear();
-                step = direction(gradient, tangents);
-                slope = step.cwiseProduct(gradient).sum();
-            }
-            if (!(slope < 0.0)) {
-                break;
-            }
-            MatrixX change = step * sizes_.asDiagonal();
-            double length = longest_step(points, change);
-            if (length < min_slide) {
-                break;
-            }
-            bool is_lower = false;
-            for (int k = 0; k < max_halvings && !is_lower; ++k) {
-                MatrixX next = points + length * change;
-                EnergyGradient there = energy_.with_gradient(next, measure_);
-                is_lower = there.value <= here.value + sufficient_decrease * length * slope;
-                if (is_lower) {
-                    MatrixX next_gradient = scaled_gradient(std::move(there.gradient));
-                    memory_.add(length * step.reshaped(), (next_gradient - gradient).reshaped());
-                    points = std::move(next);
-                    gradient = std::move(next_gradient);
-                    here.value = there.value;
-                } else {
-                    length *= 0.5;
-                }
-            }
-            if (!is_lower) {
-                break;
-            }
-        }
-        return points;
-    }
-
-    [[nodiscard]] MatrixX direction(const MatrixX& gradient, const TangentFrames& tangents) const {
-        MatrixX step = memory_.direction(gradient.reshaped()).reshaped(3, gradient.cols());
-        tangents.project(step);
-        if (memory_.is_empty()) {
-            const double largest = step.colwise().norm().maxCoeff();
-            step *= largest > 0.0 ? first_step / largest : 0.0;
-        }
-        return step;
+        return descent_.descend(
+            points_, frames(holds_curved), options_.steps_per_round,
+            [&](const MatrixX& from, const MatrixX& step) { return longest_slide(from, step); });
     }
 
     const ShapeEnergy& energy_;
+    ShapeDescent descent_;
     const BoundarySlide& slide_;
     const BoundaryFeatures& features_;
     const VolumeOptimizationOptions& options_;
     double max_distance_;
-    ShapeMeasure measure_;
     MatrixX points_;
     double value_ = infinity;
-    VectorX sizes_;
-    Lbfgs memory_;
     double reach_ = max_slide;
 };
 

@@ -335,7 +335,8 @@ class ShapeEnergy::Element {
 };
 
 ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
-                         const std::vector<int>& orientations)
+                         const std::vector<int>& orientations, const std::vector<Vector3>& boxes,
+                         int n_more_points)
     : n_dofs_(dofs.n_dofs) {
     MatrixX start(3, n_dofs_);
     for (int p = 0; p < geometry.n_patches(); ++p) {
@@ -346,6 +347,8 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
         data.weights =
             patch.is_rational() ? patch.weights() : VectorX::Ones(patch.control_points().rows());
         int n_elements = 1;
+        const Vector3 box =
+            boxes.empty() ? Vector3::Ones() : Vector3(boxes[p] / std::cbrt(boxes[p].prod()));
         for (int k = 0; k < 3; ++k) {
             const iga::KnotVector& knots = patch.knots(k);
             data.n_basis[k] = knots.n_basis();
@@ -353,13 +356,15 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
             data.breakpoints[k] = knots.breakpoints();
             n_elements *= knots.n_elements();
             const std::array<std::vector<double>, 2> samples{
-                std::vector<double>{0.0, 1.0}, iga::gauss_rule(knots.degree() + 1).points};
+                std::vector<double>{0.0, 1.0},
+                iga::gauss_rule(knots.degree() + n_more_points).points};
             for (int kind = 0; kind < 2; ++kind) {
                 iga::BasisTable table = tabulate(knots, data.breakpoints[k], samples[kind]);
                 const std::size_t per_element = table.derivatives.size() / knots.n_elements();
                 for (std::size_t i = 0; i < table.derivatives.size(); ++i) {
                     const std::size_t e = i / per_element;
-                    table.derivatives[i] *= data.breakpoints[k][e + 1] - data.breakpoints[k][e];
+                    table.derivatives[i] *=
+                        (data.breakpoints[k][e + 1] - data.breakpoints[k][e]) / box[k];
                 }
                 data.tables[kind][k] = std::move(table);
             }

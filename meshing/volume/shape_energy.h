@@ -44,18 +44,25 @@ struct ShapeSummary {
 ///
 /// E = mean over elements of (mean over samples of mu^m + weight (S / sqrt(3))^n), mu =
 /// |J|^3 / (3 sqrt(3) det J) the inverse mean ratio of the map from the unit cube to the element,
-/// sampled at the element's corners and (degree + 1)^3 Gauss points, S the smooth shape ratio of
-/// its corners. 1 + weight for cubes, independent of size. Corner samples at which `geometry` is
-/// singular (collapsed sides, corners with a straight angle) are left out, and such elements have
-/// no S. Sums run in a fixed order: results do not depend on the number of threads.
+/// sampled at the element's corners and (degree + 1)^3 Gauss points (or as many as asked for), S
+/// the smooth shape ratio of its corners. 1 + weight for cubes, independent of size. Corner samples
+/// at which `geometry` is singular (collapsed sides, corners with a straight angle) are left out,
+/// and such elements have no S. Sums run in a fixed order: results do not depend on the number of
+/// threads.
 ///
 /// Source: [Knupp01] for the mean ratio; [Escobar03] for its regularisation.
 class ShapeEnergy {
   public:
     /// @param geometry  spaces and weights; its points choose the corners left out
     /// @param orientations  of the patches, +1 or -1
+    /// @param boxes  for each patch the proportions of the box that its elements tend to in place
+    /// of
+    ///               a cube (the mean ratio is that of the map from the box of volume 1; shape
+    ///               ratios remain those of cubes); empty: cubes
+    /// @param n_more_points  Gauss points per direction beyond the degree, 0 or more
     ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
-                const std::vector<int>& orientations);
+                const std::vector<int>& orientations, const std::vector<Vector3>& boxes = {},
+                int n_more_points = 1);
 
     /// @param points  control points, 3 x n_dofs
     [[nodiscard]] double value(const MatrixX& points, const ShapeMeasure& measure) const;

@@ -76,28 +76,4 @@ MultiPatch<3> moved(const MultiPatch<3>& volume,
     return result;
 }
 
-MatrixX points_of(const MultiPatch<3>& volume, const iga::DofMap& dofs) {
-    MatrixX points(3, dofs.n_dofs);
-    for (int p = 0; p < volume.n_patches(); ++p) {
-        for (std::size_t i = 0; i < dofs.global[p].size(); ++i) {
-            points.col(dofs.global[p][i]) = volume.patches[p].control_points().row(i).transpose();
-        }
-    }
-    return points;
-}
-
-MultiPatch<3> with_points(const MultiPatch<3>& volume, const iga::DofMap& dofs,
-                          const MatrixX& points) {
-    MultiPatch<3> result = volume;
-    for (int p = 0; p < volume.n_patches(); ++p) {
-        MatrixX own(dofs.global[p].size(), 3);
-        for (int i = 0; i < own.rows(); ++i) {
-            own.row(i) = points.col(dofs.global[p][i]).transpose();
-        }
-        result.patches[p] =
-            iga::Volume(volume.patches[p].space(), own, volume.patches[p].weights());
-    }
-    return result;
-}
-
 }  // namespace couture::meshing

@@ -5,6 +5,7 @@
 
 #include "iga/topology/multipatch.h"
 #include "meshing/volume/boundary_features.h"
+#include "meshing/volume/volume_points.h"
 
 namespace couture::meshing {
 
@@ -20,12 +21,5 @@ namespace couture::meshing {
 /// Control points moved by `map`.
 [[nodiscard]] iga::MultiPatch<3> moved(const iga::MultiPatch<3>& volume,
                                        const std::function<Vector3(const Vector3&)>& map);
-
-/// Control points, 3 x n_dofs.
-[[nodiscard]] MatrixX points_of(const iga::MultiPatch<3>& volume, const iga::DofMap& dofs);
-
-/// The volume with these.
-[[nodiscard]] iga::MultiPatch<3> with_points(const iga::MultiPatch<3>& volume,
-                                             const iga::DofMap& dofs, const MatrixX& points);
 
 }  // namespace couture::meshing

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "meshing/layout/layout_samples.h"
+#include "meshing/volume/layout_cells.h"
+#include "meshing/volume/parameterize_volume.h"
+#include "meshing/volume/surface_fit.h"
+
+namespace couture::meshing {
+
+struct LayoutVolumeOptions {
+    /// In all directions; 1 to iga::max_degree.
+    int degree = 2;
+    /// Spline elements of each sheet of the volume (see LayoutCells::sheets), or one number for
+    /// all.
+    std::vector<int> n_elements{4};
+    FitOptions fit = {};
+    ParameterizationOptions parameterization = {};
+    /// Afterwards the boundary slides too (see optimize_volume); it stays within the tolerance
+    /// there.
+    bool slide_boundary = false;
+};
+
+struct LayoutVolumeReport {
+    int euler_characteristic = 0;
+    /// Distances of the samples from the boundary's splines before it slides: largest, the arc or
+    /// quad of the samples that has it (quad -1: the arc), and root of the mean square.
+    double max_distance = 0.0;
+    int worst_arc = -1;
+    int worst_quad = -1;
+    double rms_distance = 0.0;
+    ParameterizationReport parameterization;
+    iga::QualitySummary<3> quality;
+};
+
+struct LayoutVolume {
+    iga::MultiPatch<3> volume;
+    LayoutVolumeReport report;
+};
+
+/// One trivariate spline per cuboid of a layout, whose boundary runs near samples of a surface.
+///
+/// Corners interpolate the nodes, then each arc is fitted once, then each face once with its
+/// border fixed; nodes inside are placed with straight cuboids (see place_inner_nodes), inner edges
+/// are straight, inner faces and volumes Coons patches; then all control points that are not on the
+/// boundary move (see parameterize_volume). All edges of a sheet have one uniform open knot vector:
+/// neighbours share control points exactly.
+///
+/// Whether det J is certified, and the quality: see the report.
+///
+/// @param samples  of the layout's boundary: nodes are those of the volume, quads in any order and
+///                 rotation
+/// @throws InputError     for options out of range, and samples that are too few (two per spline
+///                        element) or don't fit to each other
+/// @throws TopologyError  if the samples' quads are not the layout's boundary, or the cuboids make
+///                        no solid (see check_volume_boundary)
+///
+/// Source: [Maquart19] Sec. 6.3.5; [PieglTiller97] Sec. 9.4 for the fits.
+[[nodiscard]] LayoutVolume make_layout_volume(const VolumetricLayout& layout,
+                                              const LayoutSamples& samples,
+                                              const LayoutVolumeOptions& options = {});
+
+}  // namespace couture::meshing
