@@ -119,7 +119,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
            "deck (.toml)")
         ->required();
     sub->add_option("--stage", mesh->stage,
-                    "the last stage: surface, features, loops, pants (default)");
+                    "the last stage: surface, features, loops, pants (default), layout, map, "
+                    "quads, volume");
     add_surface_options(sub, *mesh);
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
@@ -140,6 +141,9 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--most-boundaries", mesh->most_boundaries,
                     "put pants with short tubes between them together: patches of up to 3 "
                     "(default) to 6 boundary loops");
+    sub->add_option("--element-size", mesh->element_size,
+                    "length of a spline element (default: a twentieth of the diagonal)");
+    sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
     sub->add_option("--like", mesh->like,
                     "cut as another member of the family was: its NAME_pants.json")
         ->check(CLI::ExistingFile);

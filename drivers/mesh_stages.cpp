@@ -6,6 +6,7 @@
 #include <array>
 
 #include "drivers/prepared_surface.h"
+#include "drivers/solid_stages.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
@@ -13,6 +14,7 @@
 #include "io/pants_file.h"
 #include "io/picture.h"
 #include "io/surface_writer.h"
+#include "io/template_file.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 
@@ -22,7 +24,17 @@ namespace {
 
 using namespace meshing;
 
-constexpr std::array<const char*, 4> stage_names{"surface", "features", "loops", "pants"};
+constexpr std::array<const char*, 8> stage_names{"surface", "features", "loops", "pants",
+                                                 "layout",  "map",      "quads", "volume"};
+
+// Weight of sharp edges in the criterion of cycles if the deck gives none and cuboids are to
+// follow: cuts cross them.
+constexpr double clear_of_sharp_edges = -0.75;
+
+meshing::SolidStage solid_stage(MeshStage stage) {
+    return static_cast<meshing::SolidStage>(static_cast<int>(stage) -
+                                            static_cast<int>(MeshStage::layout));
+}
 
 // Kinds of curves in files; pants curves have those of PantsCurveKind.
 constexpr int tunnel_kind = 4;
@@ -237,6 +249,11 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         stages.features = detect_features(stages.mesh, deck.features);
     }
     if (last < MeshStage::loops) return stages;
+    std::optional<ClosingCaps> caps = surface.caps;
+    if (last > MeshStage::pants) {
+        if (!caps) caps = fill_boundaries(stages.mesh);
+        if (options.cycle == CriterionWeights{}) options.cycle.sharp = clear_of_sharp_edges;
+    }
     options.only_handles = last == MeshStage::loops;
     if (surface.record) {
         stages.pants =
@@ -244,14 +261,26 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     } else {
         stages.pants = decompose_into_pants(stages.mesh, options);
     }
-    if (last == MeshStage::pants)
+    if (last >= MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
+    if (last <= MeshStage::pants) return stages;
+    meshing::SolidMeshOptions solid = deck.solid;
+    solid.last = solid_stage(last);
+    solid.progress = [&](std::string_view what) {
+        log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
+    };
+    TemplateLibrary library = io::built_in_templates();
+    if (!deck.templates.empty()) io::add_templates(deck.templates, library);
+    stages.solid = mesh_solid(stages.mesh, stages.features, *stages.pants, *caps, library, solid);
     return stages;
 }
 
 std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
                                                     const MeshStages& stages, MeshStage stage,
                                                     bool png, const std::string& provenance) {
+    if (stage > MeshStage::pants) {
+        return write_solid_stage(stem, *stages.solid, solid_stage(stage), png, provenance);
+    }
     const std::vector<io::SurfaceLine> lines = lines_of(stages, stage);
     const std::vector<int> part = part_of_face(stages, stage);
     std::vector<io::SurfaceArray> on_points;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "meshing/pipeline/solid_mesh.h"
 #include "meshing/surface/features.h"
 #include "meshing/surface/surface_mesh.h"
 #include "meshing/topology/invariants.h"
@@ -14,7 +15,7 @@
 namespace couture::drivers {
 
 /// The stages of meshing, in order.
-enum class MeshStage { surface, features, loops, pants };
+enum class MeshStage { surface, features, loops, pants, layout, map, quads, volume };
 
 /// @throws InputError  for a name that is no stage: names the nearest and lists all
 [[nodiscard]] MeshStage read_mesh_stage(const std::string& name);
@@ -29,6 +30,8 @@ struct MeshStages {
     std::optional<meshing::PantsDecomposition> pants;
     /// What was decided, for other members of the family.
     std::optional<meshing::PantsRecord> record;
+    /// From the stage layout on.
+    std::optional<meshing::SolidMesh> solid;
 };
 
 /// Runs the stages of a deck up to the one that it names. Says what it does once a second.
@@ -42,7 +45,7 @@ struct MeshStages {
 ///
 /// surface: Gaussian curvature and its class, principal curvatures; features: curves and smooth
 /// faces; loops: handle (kind 1) and tunnel loops (kind 4); pants: patches and all cuts (kind 0
-/// boundary, 1 handle, 2 cycle).
+/// boundary, 1 handle, 2 cycle). Later ones: see write_solid_stage.
 ///
 /// @return the files
 /// @throws FileError  if one can't be written

@@ -136,6 +136,7 @@ PreparedSurface prepare_surface(const io::MeshDeck& deck,
         const Features features = detect_features(surface.mesh, deck.features);
         caps = select_caps(deck, open, part, surface.mesh, features);
         OpenedSurface opened = open_caps(surface.mesh, features, caps);
+        surface.caps = caps_of(surface.mesh, opened);
         surface.mesh = make_surface_mesh(opened.soup);
         cap_of_vertex = std::move(opened.cap_of_vertex);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "meshing/surface/caps.h"
 #include "meshing/surface/surface_mesh.h"
 #include "meshing/topology/pants_record.h"
 
@@ -16,6 +17,8 @@ struct PreparedSurface {
     meshing::SurfaceMesh mesh;
     /// Of its boundary loops (meshing::boundary_loops): the cap's, or empty.
     std::vector<std::string> boundary_names;
+    /// Of the surface's own; none if it was open from the start.
+    std::optional<meshing::ClosingCaps> caps;
     /// Of parts; files have none.
     meshing::Landmarks landmarks;
     /// The deck's `like`.

@@ -120,8 +120,10 @@ void read_open(Section& section, CapSelection& open) {
 
 void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     meshing::PantsOptions& pants = deck.pants;
-    deck.stage =
-        section.choice("stage", {"surface", "features", "loops", "pants"}).value_or(deck.stage);
+    deck.stage = section
+                     .choice("stage", {"surface", "features", "loops", "pants", "layout", "map",
+                                       "quads", "volume"})
+                     .value_or(deck.stage);
     deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
     if (deck.edge_length > 0.0 && deck.part.empty()) {
         section.mistake("edge_length",
@@ -168,6 +170,17 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
         }
         deck.cycles_through.push_back(std::move(through));
     });
+    meshing::SolidMeshOptions& solid = deck.solid;
+    solid.element_size = section.number("element_size", dimensions::length, positive).value_or(0.0);
+    constexpr int most_elements = 1000;
+    solid.min_elements =
+        section.integer("min_elements", 1, most_elements).value_or(solid.min_elements);
+    solid.volume.degree =
+        section.integer("degree", 1, iga::max_degree).value_or(solid.volume.degree);
+    solid.is_aligned =
+        section.choice("parameterization", {"aligned", "harmonic"}).value_or("aligned") ==
+        "aligned";
+    read_existing_file(section, "templates", folder, deck.templates);
     read_existing_file(section, "like", folder, deck.like);
     if (!deck.like.empty() && !(pants.loops.empty() && deck.cycles_through.empty())) {
         section.mistake("like",

@@ -8,6 +8,7 @@
 
 #include "iga/core/types.h"
 #include "io/units.h"
+#include "meshing/pipeline/solid_mesh.h"
 #include "meshing/surface/features.h"
 #include "meshing/topology/pants.h"
 
@@ -62,6 +63,10 @@ struct MeshDeck {
     /// But for cycles_through.
     meshing::PantsOptions pants;
     std::vector<CycleThrough> cycles_through;
+    /// From the stage layout on; its last stage and progress are not read.
+    meshing::SolidMeshOptions solid;
+    /// Templates beside the built-in ones; empty: none.
+    std::filesystem::path templates;
     /// Decisions of another member of the family, to be repeated; empty: none.
     std::filesystem::path like;
 };

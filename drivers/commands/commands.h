@@ -50,6 +50,10 @@ struct MeshOptions {
     /// Degrees.
     std::optional<double> feature_angle;
     std::optional<int> most_boundaries;
+    /// Of spline elements; 0: by the size of the surface.
+    double element_size = 0.0;
+    /// Of splines.
+    std::optional<int> degree;
     /// Decisions of another member, to be repeated; may be empty.
     std::filesystem::path like;
     /// Edge length of a part's triangles; 0: its default.

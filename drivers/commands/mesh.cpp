@@ -73,9 +73,10 @@ io::MeshDeck deck_of(const MeshOptions& options) {
         };
         const bool has_more =
             options.edge_length != 0.0 || options.feature_angle || !options.cycle_weights.empty() ||
-            !options.merge_weights.empty() || !options.open.empty() || !options.open_at.empty() ||
-            !options.open_facing.empty() || options.most_boundaries || !options.like.empty() ||
-            options.fix || options.fill_holes || options.shell;
+            !options.merge_weights.empty() || options.element_size != 0.0 || options.degree ||
+            !options.open.empty() || !options.open_at.empty() || !options.open_facing.empty() ||
+            options.most_boundaries || !options.like.empty() || options.fix || options.fill_holes ||
+            options.shell;
         if (has_more) {
             throw InputError(
                 "mesh: with a deck only --stage, --set, --out and --png are options; write the "
@@ -126,6 +127,11 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     deck.pants.cycle = read_weights(options.cycle_weights, "--cycle");
     deck.pants.merge = read_weights(options.merge_weights, "--merge");
     deck.pants.most_boundaries = options.most_boundaries.value_or(deck.pants.most_boundaries);
+    if (options.element_size < 0.0 || !std::isfinite(options.element_size)) {
+        throw InputError("mesh: --element-size {}; it must be positive", options.element_size);
+    }
+    deck.solid.element_size = options.element_size;
+    deck.solid.volume.degree = options.degree.value_or(deck.solid.volume.degree);
     deck.like = options.like;
     if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
                                options.most_boundaries)) {
@@ -207,6 +213,37 @@ std::string kinds_of_patches(const meshing::PantsDecomposition& pants) {
     return text;
 }
 
+void print_solid(const meshing::SolidMesh& solid) {
+    const auto& layout = solid.cuboids.surface.layout;
+    fmt::print("layout    {} cuboids, {} quads, {} arcs on the surface; templates {}\n",
+               solid.cuboids.volume.n_cuboids(), layout.n_quads(), layout.n_arcs(),
+               fmt::join(solid.cuboids.templates, ", "));
+    if (solid.map) {
+        const auto& report = solid.map->report;
+        fmt::print("map       energy {:.4g} to {:.4g} in {} steps, {} triangles flipped\n",
+                   report.energies.front(), report.energies.back(), report.energies.size() - 1,
+                   report.n_flipped);
+    }
+    if (solid.quads) {
+        const auto& report = *solid.relocation;
+        const auto& quality = *solid.quad_quality;
+        fmt::print(
+            "quads     nodes moved by up to {:.4g}, energy {:.4g} to {:.4g}; scaled Jacobian from "
+            "{:.3f}, mean {:.3f}; distance from the surface {:.2e} of its diagonal\n",
+            report.largest_move, report.energies.front(), report.energies.back(),
+            quality.smallest_scaled_jacobian, quality.mean_scaled_jacobian,
+            quality.hausdorff_distance);
+    }
+    if (!solid.volume) return;
+    const auto& report = solid.volume->report;
+    fmt::print(
+        "volume    {} patches, {} control points; det J {}, scaled Jacobian from {:.3f}, mean "
+        "{:.3f}; splines up to {:.3g} from the surface\n",
+        solid.volume->volume.n_patches(), solid.volume->volume.n_control_points(),
+        iga::to_string(report.parameterization.validity), report.quality.min_scaled_jacobian,
+        report.quality.mean_scaled_jacobian, report.max_distance);
+}
+
 void print_text(const MeshStages& stages, MeshStage last) {
     const auto& invariants = stages.invariants;
     fmt::print("surface   {} vertices, {} edges, {} triangles: {}, Euler characteristic {}\n",
@@ -223,12 +260,13 @@ void print_text(const MeshStages& stages, MeshStage last) {
         fmt::print("{:<9} length {:.6g}{}\n", meshing::to_string(curve.kind), curve.length,
                    curve.name.empty() ? "" : ", cap " + curve.name);
     }
-    if (last == MeshStage::pants) {
+    if (last >= MeshStage::pants) {
         const bool are_pants = stages.invariants.euler_characteristic < 0;
         fmt::print("patches   {}{}\n", stages.pants->patches.size(),
                    are_pants ? kinds_of_patches(*stages.pants)
                              : fmt::format(" ({})", stages.surface_name));
     }
+    if (stages.solid) print_solid(*stages.solid);
 }
 
 }  // namespace

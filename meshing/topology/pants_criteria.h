@@ -17,6 +17,8 @@ struct CriterionWeights {
     /// How much cheaper feature edges are than other ways: lengths there are divided by 1 + sharp.
     /// Above -1; below 0 they are dearer, so that cuts cross them.
     double sharp = 0.0;
+
+    friend bool operator==(const CriterionWeights&, const CriterionWeights&) = default;
 };
 
 /// Mirror plane { x : normal . x = offset }.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "meshing/pipeline/solid_mesh.h"
+
+namespace couture::drivers {
+
+/// Writes what a stage shows: STEM.vtp (layout and map: the surface with the number of its quad on
+/// each triangle and arcs as curves, kind 6, along sharp edges 7; quads: the quads, also as
+/// STEM.obj) or STEM.xml (the volume), and with `png` STEM.png.
+///
+/// @return the files
+/// @throws FileError  if one can't be written
+std::vector<std::filesystem::path> write_solid_stage(const std::filesystem::path& stem,
+                                                     const meshing::SolidMesh& solid,
+                                                     meshing::SolidStage stage, bool png,
+                                                     const std::string& provenance);
+
+}  // namespace couture::drivers

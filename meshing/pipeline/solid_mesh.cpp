@@ -1,0 +1,116 @@
+#include "meshing/pipeline/solid_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "iga/core/error.h"
+#include "meshing/parameterization/map_samples.h"
+#include "meshing/parameterization/sample_grid.h"
+#include "meshing/parameterization/sheet_sizes.h"
+#include "meshing/volume/layout_cells.h"
+
+namespace couture::meshing {
+
+namespace {
+
+void check_options(const SolidMeshOptions& options) {
+    if (!(options.element_size >= 0.0) || !std::isfinite(options.element_size)) {
+        throw InputError("mesh: element size {}; it must not be negative", options.element_size);
+    }
+    if (options.min_elements < 1) {
+        throw InputError("mesh: {} elements at least; it must be 1 or more", options.min_elements);
+    }
+    if (options.samples_per_element < 2) {
+        throw InputError("mesh: {} samples per element; splines need 2 or more",
+                         options.samples_per_element);
+    }
+}
+
+// Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
+// weighted by these lengths, over the wanted size.
+std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
+                                  const SolidMeshOptions& options) {
+    const double size = options.element_size > 0.0 ? options.element_size
+                                                   : bounding_box_diagonal(cuboids.mesh) / 20.0;
+    const std::vector<double> lengths = arc_lengths(cuboids.mesh, cuboids.surface);
+    std::vector<std::vector<double>> of_sheet(cells.n_sheets());
+    const QuadLayout& layout = cuboids.surface.layout;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        const QuadLayout::Arc& arc = layout.arcs()[a];
+        of_sheet[cells.sheets[cells.find_edge(arc.from, arc.to)]].push_back(lengths[a]);
+    }
+    std::vector<int> elements;
+    for (std::vector<double>& sheet : of_sheet) {
+        std::ranges::sort(sheet);
+        double half = 0.0;
+        for (const double l : sheet) half += 0.5 * l;
+        double median = 0.0;
+        for (const double l : sheet) {
+            median = l;
+            half -= l;
+            if (half <= 0.0) break;
+        }
+        elements.push_back(
+            std::max(options.min_elements, static_cast<int>(std::lround(median / size))));
+    }
+    return elements;
+}
+
+std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& cells,
+                                  const std::vector<int>& elements) {
+    std::vector<int> of_arcs;
+    for (const QuadLayout::Arc& arc : layout.arcs()) {
+        of_arcs.push_back(elements[cells.sheets[cells.find_edge(arc.from, arc.to)]]);
+    }
+    return of_arcs;
+}
+
+}  // namespace
+
+SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
+                     const PantsDecomposition& pants, const ClosingCaps& caps,
+                     const TemplateLibrary& library, const SolidMeshOptions& options) {
+    check_options(options);
+    const auto say = [&](std::string_view what) {
+        if (options.progress) options.progress(what);
+    };
+    SolidMesh solid;
+    say("choosing and drawing cuboids");
+    solid.cuboids = decompose_into_cuboids(opened, features, pants, caps, library, options.match);
+    SurfaceMesh& mesh = solid.cuboids.mesh;
+    EmbeddedLayout& surface = solid.cuboids.surface;
+    const LayoutCells cells = make_layout_cells(solid.cuboids.volume);
+    solid.elements = options.elements.empty() ? elements_by_size(solid.cuboids, cells, options)
+                                              : options.elements;
+    if (static_cast<int>(solid.elements.size()) != cells.n_sheets()) {
+        throw InputError("mesh: numbers of elements for {} sheets of cuboids, but there are {}",
+                         solid.elements.size(), cells.n_sheets());
+    }
+    if (options.last == SolidStage::layout) return solid;
+
+    say("mapping the surface");
+    split_layout_chords(mesh, surface);
+    LayoutMapOptions map_options;
+    map_options.is_optimised = options.is_aligned;
+    solid.map = make_layout_map(
+        mesh, surface, cells_of_surface(surface.layout, cells, solid.elements), map_options);
+    if (options.last == SolidStage::map) return solid;
+
+    say("moving nodes");
+    RelocatedSamples relocated =
+        relocate_nodes(mesh, surface, sample_layout_map(mesh, surface, *solid.map));
+    solid.relocation = relocated.report;
+    solid.quads = std::move(relocated.samples);
+    solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), mesh);
+    if (options.last == SolidStage::quads) return solid;
+
+    say("fitting splines and filling the volume");
+    LayoutVolumeOptions volume = options.volume;
+    volume.n_elements = solid.elements;
+    solid.volume = make_layout_volume(
+        solid.cuboids.volume,
+        refine_samples(mesh, surface, *solid.quads, options.samples_per_element), volume);
+    return solid;
+}
+
+}  // namespace couture::meshing

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "meshing/layout/cuboid_decomposition.h"
+#include "meshing/layout/layout_samples.h"
+#include "meshing/parameterization/layout_map.h"
+#include "meshing/parameterization/node_relocation.h"
+#include "meshing/parameterization/sample_quality.h"
+#include "meshing/volume/layout_volume.h"
+
+namespace couture::meshing {
+
+/// The stages from pants to a volume, in order.
+enum class SolidStage { layout, map, quads, volume };
+
+struct SolidMeshOptions {
+    /// The last stage that is run.
+    SolidStage last = SolidStage::volume;
+    MatchOptions match = {};
+    /// Wanted length of a spline element; 0: a twentieth of the diagonal of the surface's box.
+    double element_size = 0.0;
+    /// Elements of each sheet of cuboids, at least.
+    int min_elements = 2;
+    /// Elements of each sheet of cuboids, in the order of LayoutCells::sheets, as another member of
+    /// the family has them; empty: by their size.
+    std::vector<int> elements = {};
+    /// Whether the map is optimised over the whole surface; else quads are mapped each on its own.
+    bool is_aligned = true;
+    /// Points of the surface for each element and direction that splines are fitted to; at least 2.
+    int samples_per_element = 4;
+    /// Its numbers of elements are not read.
+    LayoutVolumeOptions volume = {};
+    /// Called with what is being done; may throw to stop.
+    std::function<void(std::string_view)> progress = {};
+};
+
+/// What the stages made of a solid; those behind the last one are empty.
+struct SolidMesh {
+    CuboidDecomposition cuboids;
+    /// Elements of each sheet of cuboids, in the order of LayoutCells::sheets.
+    std::vector<int> elements;
+    std::optional<LayoutMap> map;
+    /// One cell for each spline element.
+    std::optional<LayoutSamples> quads;
+    std::optional<NodeRelocationReport> relocation;
+    std::optional<QuadQuality> quad_quality;
+    std::optional<LayoutVolume> volume;
+};
+
+/// From a surface that is cut into pants to trivariate splines: cuboids, aligned global map, quads
+/// whose nodes have moved to better places, splines.
+///
+/// @param opened, features, pants, caps, library  as decompose_into_cuboids
+/// @throws InputError  for options out of range, and as the stages
+///
+/// Source: [Maquart19] Fig. 4.12, Sec. 6.3.5.
+[[nodiscard]] SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
+                                   const PantsDecomposition& pants, const ClosingCaps& caps,
+                                   const TemplateLibrary& library,
+                                   const SolidMeshOptions& options = {});
+
+}  // namespace couture::meshing
