@@ -146,15 +146,17 @@ class SplineMeshing {
   private:
     // The file's volumes, or those between its surfaces.
     MultiPatch<3> read() {
-        if (options_.stage == "hexes") {
-            try {
-                return std::get<MultiPatch<3>>(io::read_splines(options_.surface).multipatch);
-            } catch (const std::bad_variant_access&) {
-                // Surfaces.
-            }
-        }
         const auto surfaces = io::read_spline_surfaces(options_.surface);
-        auto [volume, of_patches, report] = meshing::volumes_from_surfaces(surfaces);
+        if (!surfaces && options_.stage == "volume") {
+            throw InputError(
+                "mesh: {} holds volumes; --stage volume makes them from surfaces in space, --stage "
+                "hexes samples them",
+                options_.surface);
+        }
+        if (!surfaces) {
+            return std::get<MultiPatch<3>>(io::read_splines(options_.surface).multipatch);
+        }
+        auto [volume, of_patches, report] = meshing::volumes_from_surfaces(*surfaces);
         warn_of(file_, report);
         object_["surfaces"] = to_json(report);
         object_["volume"] = summary(volume, report.parameterization);
