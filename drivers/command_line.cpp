@@ -115,12 +115,15 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                       [&command, mesh] { return run_mesh(*mesh, command.common); });
     sub->add_option(
            "surface", mesh->surface,
-           "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), or a "
-           "deck (.toml)")
+           "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), a "
+           "deck (.toml), or a spline file (.xml, .mesh, .txt, .inp, .h5)")
         ->required();
     sub->add_option("--stage", mesh->stage,
                     "the last stage: surface, features, loops, pants (default), layout, map, "
-                    "quads, volume");
+                    "quads, volume, hexes; of splines: volume (from surfaces), hexes");
+    sub->add_option("--points", mesh->n_points,
+                    "points per direction of the hexahedra in each patch (default: as many as "
+                    "control points)");
     add_surface_options(sub, *mesh);
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");

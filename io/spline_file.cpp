@@ -202,12 +202,13 @@ SplineFile read_splines(const std::filesystem::path& path) {
     return {std::move(raw.multipatch), name_of(format), std::move(raw.notes)};
 }
 
-std::vector<iga::Surface> read_spline_surfaces(const std::filesystem::path& path) {
+std::optional<std::vector<iga::Surface>> read_spline_surfaces(const std::filesystem::path& path) {
     RawSplines raw = read_raw(path).first;
     const auto* surfaces = std::get_if<iga::MultiPatch<2>>(&raw.multipatch);
-    if (surfaces == nullptr || surfaces->dimension() != 3) {
-        throw FileError("{}: holds {}; expected surfaces in space", path.string(),
-                        surfaces == nullptr ? "volumes" : "surfaces in the plane");
+    if (surfaces == nullptr) return std::nullopt;
+    if (surfaces->dimension() != 3) {
+        throw FileError("{}: holds surfaces in the plane; expected surfaces in space",
+                        path.string());
     }
     return surfaces->patches;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,8 +30,10 @@ struct SplineFile {
 /// The surfaces in space of a file, as they are: interfaces are neither read nor found, borders
 /// may be shared by many.
 ///
-/// @throws FileError  as read_splines, and for volumes or surfaces in the plane
-[[nodiscard]] std::vector<iga::Surface> read_spline_surfaces(const std::filesystem::path& path);
+/// @return nothing for a file of volumes
+/// @throws FileError  as read_splines, and for surfaces in the plane
+[[nodiscard]] std::optional<std::vector<iga::Surface>> read_spline_surfaces(
+    const std::filesystem::path& path);
 
 /// Whether the extension is one of splines: .xml, .mesh, .txt, .inp, .h5.
 [[nodiscard]] bool is_spline_file(const std::filesystem::path& path);

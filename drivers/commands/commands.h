@@ -34,7 +34,7 @@ struct SolveOptions {
 };
 
 struct MeshOptions {
-    /// A surface file, the name of a part, or a deck.
+    /// A surface file, the name of a part, a deck, or a spline file (see mesh_splines).
     std::string surface;
     /// The last stage that is made; empty: the deck's, or pants.
     std::string stage;
@@ -58,6 +58,8 @@ struct MeshOptions {
     std::filesystem::path like;
     /// Edge length of a part's triangles; 0: its default.
     double edge_length = 0.0;
+    /// Points per direction of each patch's hexahedra; nothing: as many as control points.
+    std::optional<int> n_points;
     /// As in SurfaceInputOptions.
     bool fix = false;
     bool fill_holes = false;

@@ -8,12 +8,14 @@
 
 #include "drivers/commands/commands.h"
 #include "drivers/hash.h"
+#include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/mesh_deck.h"
+#include "io/spline_file.h"
 #include "meshing/surface/curvature_clusters.h"
 
 namespace couture::drivers {
@@ -272,6 +274,11 @@ void print_text(const MeshStages& stages, MeshStage last) {
 }  // namespace
 
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
+    if (io::is_spline_file(options.surface)) return mesh_splines(options, common);
+    if (options.n_points) {
+        throw InputError("mesh: --points is for spline files with --stage hexes; {} is none",
+                         options.surface);
+    }
     const io::MeshDeck deck = deck_of(options);
     const MeshStage last = read_mesh_stage(deck.stage);
 
