@@ -38,13 +38,13 @@ struct SolveRow {
 };
 
 /// Handle and tunnel loops, and the decomposition into pants (which looks for loops first), of a
-/// part on one thread.
+/// part on one thread, in seconds of processor time: other programs on the machine don't count.
 struct CuttingRow {
     std::string part;
     int genus = 0;
     int n_triangles = 0;
-    double loops_seconds = 0.0;
-    double pants_seconds = 0.0;
+    double loops_cpu_seconds = 0.0;
+    double pants_cpu_seconds = 0.0;
 };
 
 struct BenchOptions {

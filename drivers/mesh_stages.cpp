@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "drivers/prepared_surface.h"
 #include "drivers/solid_stages.h"
@@ -17,6 +18,7 @@
 #include "io/template_file.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
+#include "meshing/surface/cut_surface.h"
 
 namespace couture::drivers {
 
@@ -138,12 +140,16 @@ VectorX mean_curvature(const SurfaceMesh& mesh) {
     return mean;
 }
 
-// Between the values that a fiftieth is below and above: those of sharp edges grow with the mesh.
-std::array<double, 2> shown_range(const VectorX& values) {
-    std::vector<double> sorted(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
-    const std::size_t tail = sorted.size() / 50;
-    return {sorted[tail], sorted[sorted.size() - 1 - tail]};
+// From -m to m with a fiftieth of the values beyond: nothing is the middle of the colours.
+std::array<double, 2> shown_range(const SurfaceMesh& mesh, const VectorX& values) {
+    std::vector<double> sizes(values.size());
+    std::transform(values.begin(), values.end(), sizes.begin(),
+                   [](double value) { return std::abs(value); });
+    std::sort(sizes.begin(), sizes.end());
+    const double most = sizes[sizes.size() - 1 - sizes.size() / 50];
+    constexpr double rounding = 1e-9;
+    if (most * bounding_box_diagonal(mesh) < rounding) return {0.0, 0.0};
+    return {-most, most};
 }
 
 io::CurvePiece make_curve(const io::SurfaceLine& line) {
@@ -157,21 +163,43 @@ io::CurvePiece make_curve(const io::SurfaceLine& line) {
             .width = line.kind == feature_kind ? 2.2 : 5.0};
 }
 
-// The surface coloured by its mean curvature, with its sharp curves.
-void show_curvature(const SurfaceMesh& mesh, const std::vector<int>& used, io::Scene& scene) {
-    const VectorX mean = mean_curvature(mesh);
-    scene.range = shown_range(mean);
-    scene.legend = "mean curvature, 1 / length";
-    VectorX& values = scene.surfaces.back().values;
-    values.resize(static_cast<Eigen::Index>(used.size()));
-    for (std::size_t v = 0; v < used.size(); ++v) {
-        values[static_cast<Eigen::Index>(v)] = mean[used[v]];
-    }
-    SurfaceMesh tagged = mesh;
-    for (const FeatureCurve& curve : detect_features(tagged).curves) {
+// The smooth faces, apart from each other.
+SurfaceMesh open_along_features(const SurfaceMesh& mesh) {
+    const std::vector<FaceHandle> faces(mesh.faces_begin(), mesh.faces_end());
+    std::vector<bool> is_sharp(mesh.n_edges());
+    for (const auto edge : mesh.edges()) is_sharp[edge.idx()] = mesh.data(edge).feature >= 0;
+    const CutSurface opened(mesh, faces, is_sharp);
+    TriangleSoup soup;
+    for (int v = 0; v < opened.n_vertices(); ++v) soup.points.push_back(opened.point(v));
+    for (int f = 0; f < opened.n_faces(); ++f) soup.triangles.push_back(opened.triangle(f));
+    return make_surface_mesh(soup);
+}
+
+// The surface coloured by its mean curvature, with its sharp curves. Those belong to no smooth
+// face: theirs would grow with the mesh and hide all others.
+io::Scene make_curvature_scene(SurfaceMesh mesh) {
+    io::Scene scene;
+    for (const FeatureCurve& curve : detect_features(mesh).curves) {
         scene.curves.push_back(
             make_curve(make_line(mesh, curve.vertices, curve.is_closed, feature_kind, 0)));
     }
+    const SurfaceMesh opened = open_along_features(mesh);
+    io::SurfacePiece piece;
+    piece.vertices.resize(static_cast<Eigen::Index>(opened.n_vertices()), 3);
+    for (const auto vertex : opened.vertices()) {
+        piece.vertices.row(vertex.idx()) = opened.point(vertex).transpose();
+    }
+    piece.triangles.resize(static_cast<Eigen::Index>(opened.n_faces()), 3);
+    for (const auto face : opened.faces()) {
+        const auto [a, b, c] = face_vertices(opened, face);
+        piece.triangles.row(face.idx()) << a.idx(), b.idx(), c.idx();
+    }
+    piece.values = mean_curvature(opened);
+    scene.range = shown_range(mesh, piece.values);
+    scene.legend = "mean curvature";
+    scene.title = to_string(MeshStage::surface);
+    scene.surfaces.push_back(std::move(piece));
+    return scene;
 }
 
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
@@ -208,7 +236,6 @@ io::Scene make_scene(const MeshStages& stages, MeshStage stage,
         }
         if (n_parts > 1) piece.color = io::part_color(p);
         scene.surfaces.push_back(std::move(piece));
-        if (stage == MeshStage::surface) show_curvature(mesh, used, scene);
     }
     for (const io::SurfaceLine& line : lines) scene.curves.push_back(make_curve(line));
     scene.title = to_string(stage);
@@ -303,7 +330,8 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (png) {
         std::filesystem::path picture = stem;
         picture += ".png";
-        io::render_png(picture, make_scene(stages, stage, lines));
+        io::render_png(picture, stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
+                                                            : make_scene(stages, stage, lines));
         files.push_back(picture);
     }
     return files;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "iga/core/error.h"
 
@@ -121,6 +124,25 @@ int CutSurface::find_halfedge(int u, int v) const {
         if (h == first) break;
     }
     return -1;
+}
+
+std::vector<int> CutSurface::with_splits(std::span<const int> vertices) const {
+    std::map<std::pair<int, int>, int> middle;
+    for (const Split& split : splits_) middle[std::minmax(split.from, split.to)] = split.vertex;
+    std::vector<int> refined;
+    const std::function<void(int, int)> add = [&](int from, int to) {
+        const auto split = middle.find(std::minmax(from, to));
+        if (split == middle.end()) {
+            refined.push_back(from);
+            return;
+        }
+        add(from, split->second);
+        add(split->second, to);
+    };
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        add(vertices[k], vertices[(k + 1) % vertices.size()]);
+    }
+    return refined;
 }
 
 int CutSurface::split_edge(int h, double fraction) {

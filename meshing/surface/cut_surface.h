@@ -84,6 +84,9 @@ class CutSurface {
     /// All splits so far, in order.
     [[nodiscard]] const std::vector<Split>& splits() const { return splits_; }
 
+    /// Vertices of a closed path with those by which its edges were split since.
+    [[nodiscard]] std::vector<int> with_splits(std::span<const int> vertices) const;
+
     /// Splits an edge and its one or two triangles.
     ///
     /// @param fraction  of the way along h, in (0, 1)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "meshing/surface/cut_surface.h"

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
-#include <queue>
 #include <set>
-#include <tuple>
 
 #include "iga/core/error.h"
 #include "meshing/surface/shortest_paths.h"
 #include "meshing/topology/homology_basis.h"
+#include "meshing/topology/knotted_loops.h"
 #include "meshing/topology/linking.h"
 
 namespace couture::meshing {
@@ -21,18 +18,10 @@ namespace couture::meshing {
 namespace {
 
 using Class = std::vector<int>;
-
-enum class Kind { handle, tunnel };
+using Loop = AnnotatedLoop;
+using Kind = LoopKind;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-// Closed path of halfedges, good until edges are split; its vertices are good for ever.
-struct Loop {
-    double length = 0.0;
-    std::vector<int> path;
-    std::vector<int> vertices;
-    Class homology_class;
-};
 
 bool is_zero(const Class& c) {
     return std::all_of(c.begin(), c.end(), [](int x) { return x == 0; });
@@ -45,14 +34,6 @@ Class without_sign(Class c) {
         for (int& x : c) x = -x;
     }
     return c;
-}
-
-bool is_of_kind(const Class& c, const IntegerMatrix& projector, Kind kind) {
-    const std::vector<long long> row(c.begin(), c.end());
-    const auto image = multiply(row, projector);
-    return kind == Kind::tunnel
-               ? image == row
-               : std::all_of(image.begin(), image.end(), [](long long x) { return x == 0; });
 }
 
 // The shortest loops found so far, one for each class of either kind.
@@ -193,18 +174,10 @@ class LoopPool {
         while (n_common < std::min(out.size(), back.size()) && out[n_common] == back[n_common]) {
             ++n_common;
         }
-        Loop loop;
-        loop.path.assign(out.begin() + static_cast<std::ptrdiff_t>(n_common), out.end());
-        loop.path.push_back(seed.halfedge);
-        for (std::size_t k = back.size(); k-- > n_common;) {
-            loop.path.push_back(surface.twin(back[k]));
-        }
-        for (const int h : loop.path) {
-            loop.length += surface.length(h);
-            loop.vertices.push_back(surface.origin(h));
-        }
-        loop.homology_class = annotated_.class_of(loop.path);
-        return loop;
+        std::vector<int> path(out.begin() + static_cast<std::ptrdiff_t>(n_common), out.end());
+        path.push_back(seed.halfedge);
+        for (std::size_t k = back.size(); k-- > n_common;) path.push_back(surface.twin(back[k]));
+        return annotated_.make_loop(std::move(path));
     }
 
     const AnnotatedSurface& annotated_;
@@ -219,157 +192,6 @@ class LoopPool {
     std::set<Class> is_neither_;
     std::vector<Loop> added_;
 };
-
-IntegerMatrix transposed(const IntegerMatrix& rows, std::size_t n_columns) {
-    IntegerMatrix columns(n_columns, std::vector<long long>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        for (std::size_t j = 0; j < n_columns; ++j) columns[j][i] = rows[i][j];
-    }
-    return columns;
-}
-
-// Classes of a kind, as a basis.
-IntegerMatrix classes_of_kind(const IntegerMatrix& projector, Kind kind) {
-    IntegerMatrix matrix = projector;
-    if (kind == Kind::tunnel) {
-        for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] -= 1;
-    }
-    return left_kernel(matrix);
-}
-
-// Integer functions of classes that vanish on all rows, as a basis.
-IntegerMatrix functions_that_vanish(const IntegerMatrix& rows, int rank) {
-    return left_kernel(transposed(rows, static_cast<std::size_t>(rank)));
-}
-
-long long value_of(const std::vector<long long>& function, const Class& c) {
-    long long sum = 0;
-    for (std::size_t k = 0; k < c.size(); ++k) sum += function[k] * c[k];
-    return sum;
-}
-
-// Shortest closed walks through a vertex of whose class some functions have given values:
-// Dijkstra's algorithm on pairs of a vertex and the values so far, none beyond `largest`. Needed
-// for knotted tubes only, whose loops are no two shortest paths and an edge.
-class CoveringSearch {
-  public:
-    // The first function shall be 1 or -1, the others 0.
-    CoveringSearch(const AnnotatedSurface& annotated, const IntegerMatrix& functions, int largest)
-        : annotated_(annotated), largest_(largest) {
-        for (const Class& c : annotated.classes) {
-            Class& change = changes_.emplace_back();
-            for (const auto& f : functions) change.push_back(static_cast<int>(value_of(f, c)));
-        }
-    }
-
-    [[nodiscard]] std::optional<Loop> run(int source, double longest) {
-        const CutSurface& surface = annotated_.surface;
-        const int n = surface.n_vertices();
-        values_.assign(1, Class(changes_.front().size(), 0));
-        number_ = {{values_.front(), 0}};
-        states_.assign(n, {});
-        using Entry = std::tuple<double, int, int>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-        const auto state_of = [&](int v, int c) -> State& {
-            return states_[static_cast<std::size_t>(c) * n + v];
-        };
-        state_of(source, 0) = {0.0, -1, 0, false};
-        queue.emplace(0.0, source, 0);
-        while (!queue.empty()) {
-            const auto [distance, v, c] = queue.top();
-            queue.pop();
-            if (distance >= longest) break;
-            State& state = state_of(v, c);
-            if (state.is_settled) continue;
-            state.is_settled = true;
-            if (v == source && is_wanted(values_[c])) return loop_to(v, c);
-            const int first = surface.outgoing(v);
-            for (int h = first; h >= 0;) {
-                const int w = surface.target(h);
-                if (surface.twin(h) >= 0 && !surface.is_boundary_vertex(w)) {
-                    const int next = values_behind(c, h);
-                    const double length = distance + surface.length(h);
-                    if (next >= 0) {
-                        State& there = state_of(w, next);
-                        if (!there.is_settled && length < there.distance) {
-                            there = {length, h, c, false};
-                            queue.emplace(length, w, next);
-                        }
-                    }
-                }
-                h = surface.rotated(h);
-                if (h == first) break;
-            }
-        }
-        return std::nullopt;
-    }
-
-  private:
-    static constexpr std::size_t most_states = 20'000'000;
-
-    struct State {
-        double distance = std::numeric_limits<double>::infinity();
-        int arrival = -1;
-        int values_before = 0;
-        bool is_settled = false;
-    };
-
-    static bool is_wanted(const Class& values) {
-        return std::abs(values.front()) == 1 &&
-               std::all_of(values.begin() + 1, values.end(), [](int x) { return x == 0; });
-    }
-
-    int values_behind(int c, int h) {
-        if (annotated_.annotation[h] == 0) return c;
-        const Class& change = changes_[annotated_.annotation[h]];
-        Class sum = values_[c];
-        for (std::size_t k = 0; k < sum.size(); ++k) {
-            sum[k] += change[k];
-            if (std::abs(sum[k]) > largest_) return -1;
-        }
-        const auto [entry, is_new] = number_.try_emplace(sum, static_cast<int>(values_.size()));
-        if (is_new) {
-            const auto n = static_cast<std::size_t>(annotated_.surface.n_vertices());
-            if (states_.size() + n > most_states) {
-                number_.erase(entry);
-                return -1;
-            }
-            values_.push_back(sum);
-            states_.resize(states_.size() + n);
-        }
-        return entry->second;
-    }
-
-    [[nodiscard]] Loop loop_to(int v, int c) const {
-        const auto n = static_cast<std::size_t>(annotated_.surface.n_vertices());
-        Loop loop;
-        loop.length = states_[c * n + v].distance;
-        for (State state = states_[c * n + v]; state.arrival >= 0;) {
-            loop.path.push_back(state.arrival);
-            v = annotated_.surface.origin(state.arrival);
-            state = states_[state.values_before * n + v];
-        }
-        std::reverse(loop.path.begin(), loop.path.end());
-        for (const int h : loop.path) loop.vertices.push_back(annotated_.surface.origin(h));
-        loop.homology_class = annotated_.class_of(loop.path);
-        return loop;
-    }
-
-    const AnnotatedSurface& annotated_;
-    int largest_;
-    // For each class of an annotation.
-    std::vector<Class> changes_;
-    std::vector<Class> values_;
-    std::map<Class, int> number_;
-    // By values, then vertex.
-    std::vector<State> states_;
-};
-
-bool is_simple(const CutSurface& surface, const std::vector<int>& path) {
-    std::set<int> seen;
-    return std::all_of(path.begin(), path.end(),
-                       [&](int h) { return seen.insert(surface.origin(h)).second; });
-}
 
 // At most n of the numbers, evenly spaced.
 std::vector<int> sample(const std::vector<int>& numbers, std::size_t n) {
@@ -416,73 +238,7 @@ double longest_of(const std::vector<Loop>& loops) {
     return longest;
 }
 
-// The shortest simple loop through one of the sources on which `wanted` is 1 or -1 and all of
-// `zeros` vanish. Most of them do so of themselves: only those are tracked that did not.
-std::optional<Loop> shortest_knotted(const AnnotatedSurface& annotated,
-                                     const std::vector<long long>& wanted,
-                                     const IntegerMatrix& zeros, int largest,
-                                     const std::vector<int>& sources) {
-    IntegerMatrix tracked{wanted};
-    std::vector<bool> is_tracked(zeros.size(), false);
-    for (;;) {
-        CoveringSearch search(annotated, tracked, largest);
-        std::optional<Loop> best;
-        bool is_complete = true;
-        for (const int source : sources) {
-            if (annotated.surface.is_boundary_vertex(source)) continue;
-            const auto loop = search.run(source, best ? best->length : unlimited);
-            if (!loop || !is_simple(annotated.surface, loop->path)) continue;
-            best = loop;
-            for (std::size_t j = 0; j < zeros.size(); ++j) {
-                if (value_of(zeros[j], loop->homology_class) == 0 || is_tracked[j]) continue;
-                is_tracked[j] = true;
-                is_complete = false;
-                tracked.push_back(zeros[j]);
-            }
-            if (!is_complete) break;
-        }
-        if (is_complete) return best;
-    }
-}
-
 constexpr std::size_t n_covering_sources = 8;
-
-// At most n loops of knotted tubes that extend `chosen` to a primitive system.
-//
-// @param sources  vertices that such loops are likely to pass
-std::vector<Loop> find_knotted(const AnnotatedSurface& annotated, const IntegerMatrix& projector,
-                               Kind kind, const std::vector<int>& sources,
-                               const IntegerMatrix& chosen, std::size_t n) {
-    std::vector<Loop> loops;
-    long long largest_entry = 1;
-    for (const auto& row : projector) {
-        for (const long long entry : row)
-            largest_entry = std::max(largest_entry, std::llabs(entry));
-    }
-    const Kind other = kind == Kind::handle ? Kind::tunnel : Kind::handle;
-    const IntegerMatrix zeros =
-        functions_that_vanish(classes_of_kind(projector, kind), annotated.rank);
-    IntegerMatrix known = classes_of_kind(projector, other);
-    known.insert(known.end(), chosen.begin(), chosen.end());
-    constexpr int n_doublings = 4;
-    int largest = static_cast<int>(largest_entry) + 1;
-    for (int i = 0; i < n_doublings && loops.size() < n;) {
-        // A class of the kind on which one of them is 1 extends the known ones to a basis.
-        std::optional<Loop> best;
-        for (const auto& wanted : functions_that_vanish(known, annotated.rank)) {
-            const auto loop = shortest_knotted(annotated, wanted, zeros, largest, sources);
-            if (loop && (!best || loop->length < best->length)) best = loop;
-        }
-        if (best) {
-            known.emplace_back(best->homology_class.begin(), best->homology_class.end());
-            loops.push_back(*best);
-        } else {
-            largest *= 2;
-            ++i;
-        }
-    }
-    return loops;
-}
 
 // Splits the chords of a sliced surface, and the same edges of the one that is whole.
 void split_chords_of_both(AnnotatedSurface& sliced, AnnotatedSurface& whole) {
@@ -544,8 +300,8 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
             if (is_last || (!found.empty() && found.front().length <= limit)) break;
         }
         if (found.empty()) {
-            found = find_knotted(sliced, projector, kind, sample(sources, n_covering_sources),
-                                 chosen, 1);
+            found = find_knotted_loops(sliced, projector, kind, sample(sources, n_covering_sources),
+                                       chosen, 1);
         }
         if (found.empty()) {
             // Narrow places are passed at vertices that no crossing loop has.
@@ -574,46 +330,37 @@ std::vector<Loop> make_disjoint(AnnotatedSurface& whole, const IntegerMatrix& pr
     return disjoint;
 }
 
-// Vertices of a loop on a surface some of whose edges were split after the loop was found.
+// A loop on a surface some of whose edges were split after the loop was found.
 HomologyLoop finish(const CutSurface& surface, const Loop& loop) {
-    const std::vector<int>& vertices = loop.vertices;
-    std::map<std::pair<int, int>, int> middle;
-    for (const auto& split : surface.splits()) {
-        middle[{std::min(split.from, split.to), std::max(split.from, split.to)}] = split.vertex;
-    }
-    HomologyLoop finished{.vertices = {}, .length = 0.0, .homology_class = loop.homology_class};
-    const std::function<void(int, int)> add = [&](int from, int to) {
-        const auto split = middle.find({std::min(from, to), std::max(from, to)});
-        if (split == middle.end()) {
-            finished.vertices.push_back(from);
-            finished.length += (surface.point(to) - surface.point(from)).norm();
-            return;
-        }
-        add(from, split->second);
-        add(split->second, to);
-    };
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-        add(vertices[k], vertices[(k + 1) % vertices.size()]);
+    HomologyLoop finished{.vertices = surface.with_splits(loop.vertices),
+                          .length = 0.0,
+                          .homology_class = loop.homology_class};
+    const std::size_t n = finished.vertices.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        finished.length +=
+            (surface.point(finished.vertices[(k + 1) % n]) - surface.point(finished.vertices[k]))
+                .norm();
     }
     return finished;
+}
+
+// Halfedges of a closed path, -1 for steps that are no inner edges.
+std::vector<int> path_along(const CutSurface& surface, const std::vector<int>& vertices) {
+    std::vector<int> path;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        path.push_back(surface.find_halfedge(vertices[k], vertices[(k + 1) % vertices.size()]));
+    }
+    return path;
 }
 
 // A cut that was made already; it must bound inside.
 Loop make_given_loop(const AnnotatedSurface& annotated, const IntegerMatrix& projector,
                      const std::vector<int>& vertices, std::size_t number) {
-    Loop loop;
-    loop.vertices = vertices;
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-        const int h =
-            annotated.surface.find_halfedge(vertices[k], vertices[(k + 1) % vertices.size()]);
-        if (h < 0) {
-            throw TopologyError("handle and tunnel loops: cut {} is no path of inner edges",
-                                number);
-        }
-        loop.path.push_back(h);
-        loop.length += annotated.surface.length(h);
+    std::vector<int> path = path_along(annotated.surface, vertices);
+    if (std::find(path.begin(), path.end(), -1) != path.end()) {
+        throw TopologyError("handle and tunnel loops: cut {} is no path of inner edges", number);
     }
-    loop.homology_class = annotated.class_of(loop.path);
+    Loop loop = annotated.make_loop(std::move(path));
     if (!is_of_kind(loop.homology_class, projector, Kind::handle)) {
         const Vector3& x = annotated.surface.point(vertices.front());
         throw TopologyError(
@@ -665,8 +412,10 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
     }
     const int n_handles = basis.genus - static_cast<int>(given_classes.size());
     if (needs_all_handles && n_handles > 0) {
-        throw TopologyError("handle and tunnel loops: the cuts leave {} of {} handles", n_handles,
-                            basis.genus);
+        throw TopologyError(
+            "handle and tunnel loops: the cuts leave {} of {} handles; each needs a cut that "
+            "bounds inside and does not divide the surface, alone or with others: add {}",
+            n_handles, basis.genus, n_handles);
     }
 
     LoopPool pool(annotated, result.projector);
@@ -708,8 +457,8 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
         for (const Loop& loop : loops) {
             chosen.emplace_back(loop.homology_class.begin(), loop.homology_class.end());
         }
-        for (const Loop& loop : find_knotted(annotated, result.projector, kind, sources, chosen,
-                                             n_of(kind) - loops.size())) {
+        for (const Loop& loop : find_knotted_loops(annotated, result.projector, kind, sources,
+                                                   chosen, n_of(kind) - loops.size())) {
             loops.push_back(loop);
             pool.add(loop, kind);
         }
@@ -750,14 +499,9 @@ HandleTunnelLoops find_handle_tunnel_loops(const CutSurface& surface,
     const std::vector<Loop> disjoint_handles = make_disjoint(
         annotated, result.projector, Kind::handle, handles, tunnels, given, given_classes);
     // Handles may have split edges of tunnels.
-    for (std::size_t i = 0; i < tunnels.size(); ++i) {
-        const auto vertices = finish(annotated.surface, tunnels[i]).vertices;
-        tunnels[i].vertices = vertices;
-        tunnels[i].path.clear();
-        for (std::size_t k = 0; k < vertices.size(); ++k) {
-            tunnels[i].path.push_back(
-                annotated.surface.find_halfedge(vertices[k], vertices[(k + 1) % vertices.size()]));
-        }
+    for (Loop& tunnel : tunnels) {
+        tunnel = annotated.make_loop(
+            path_along(annotated.surface, annotated.surface.with_splits(tunnel.vertices)));
     }
     const std::vector<Loop> disjoint_tunnels =
         make_disjoint(annotated, result.projector, Kind::tunnel, tunnels, with_given(handles));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "iga/core/error.h"
 #include "meshing/topology/tree_cotree.h"
@@ -49,6 +50,17 @@ std::vector<int> AnnotatedSurface::class_of(const std::vector<int>& path) const 
         if (annotation[h] != 0) sum = sum_of(sum, classes[annotation[h]], 1);
     }
     return sum;
+}
+
+AnnotatedLoop AnnotatedSurface::make_loop(std::vector<int> path) const {
+    AnnotatedLoop loop;
+    for (const int h : path) {
+        loop.length += surface.length(h);
+        loop.vertices.push_back(surface.origin(h));
+    }
+    loop.homology_class = class_of(path);
+    loop.path = std::move(path);
+    return loop;
 }
 
 int AnnotatedSurface::number(const std::vector<int>& homology_class) {

@@ -7,6 +7,16 @@
 
 namespace couture::meshing {
 
+/// Closed path of halfedges with its class in Z^rank. The path is good until edges are split; the
+/// vertices are good for ever.
+struct AnnotatedLoop {
+    double length = 0.0;
+    std::vector<int> path;
+    /// Origins of the halfedges.
+    std::vector<int> vertices;
+    std::vector<int> homology_class;
+};
+
 /// A surface with what each halfedge adds to the first homology class of a path: the class of a
 /// closed path, in Z^rank, is the sum of `classes[annotation[h]]` over its halfedges.
 ///
@@ -22,6 +32,8 @@ struct AnnotatedSurface {
 
     /// Class of a path of halfedges.
     [[nodiscard]] std::vector<int> class_of(const std::vector<int>& path) const;
+    /// A closed path of halfedges with its vertices, length and class.
+    [[nodiscard]] AnnotatedLoop make_loop(std::vector<int> path) const;
     /// Number of a class in `classes`, new if need be.
     int number(const std::vector<int>& homology_class);
     /// As CutSurface::split_edge and split_chords, with annotations of the new edges.

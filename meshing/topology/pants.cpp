@@ -87,7 +87,7 @@ class Decomposer {
         check_options();
         split_chords_between_curves(mesh_);
         n_boundaries_ = result_.curves.size();
-        for (const GuideLoop& loop : options_.loops) add_loop(loop);
+        for (std::size_t i = 0; i < options_.loops.size(); ++i) add_loop(i);
     }
 
     static InputError no_points() {
@@ -175,8 +175,25 @@ class Decomposer {
         return options_.boundary_order;
     }
 
-    void add_loop(const GuideLoop& loop) {
+    // Whether all points of each loop lie on the other.
+    [[nodiscard]] bool are_same(const GuideLoop& a, const GuideLoop& b) const {
+        const double tolerance = 1e-6 * bounding_box_diagonal(mesh_);
+        const auto lies_on = [&](const GuideLoop& loop, const GuideLoop& other) {
+            return std::all_of(loop.points.begin(), loop.points.end(), [&](const Vector3& point) {
+                return distance_to_loop(point, other.points) <= tolerance;
+            });
+        };
+        return lies_on(a, b) && lies_on(b, a);
+    }
+
+    void add_loop(std::size_t i) {
         report("following given loops", 0.0);
+        const GuideLoop& loop = options_.loops[i];
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!are_same(loop, options_.loops[j])) continue;
+            throw InputError("pants: curves {} and {} are the same loop; give it once",
+                             n_boundaries_ + j, n_boundaries_ + i);
+        }
         const double width = options_.loop_width * bounding_box_diagonal(mesh_);
         SurfaceCurve curve;
         try {
@@ -193,24 +210,9 @@ class Decomposer {
     // Puts the vertices into a curve by which its edges were split on a copy of the surface.
     void refine_curve(int number, const std::vector<int>& vertices, const CutSurface& copy,
                       const std::vector<VertexHandle>& handles) {
-        std::map<std::pair<int, int>, int> middle;
-        for (const auto& split : copy.splits()) {
-            middle[std::minmax(split.from, split.to)] = split.vertex;
-        }
         SurfaceCurve& curve = result_.curves[number].curve;
         curve.vertices.clear();
-        const std::function<void(int, int)> add = [&](int from, int to) {
-            const auto split = middle.find(std::minmax(from, to));
-            if (split == middle.end()) {
-                curve.vertices.push_back(handles[from]);
-                return;
-            }
-            add(from, split->second);
-            add(split->second, to);
-        };
-        for (std::size_t k = 0; k < vertices.size(); ++k) {
-            add(vertices[k], vertices[(k + 1) % vertices.size()]);
-        }
+        for (const int v : copy.with_splits(vertices)) curve.vertices.push_back(handles[v]);
         for (const HalfedgeHandle h : curve_halfedges(mesh_, curve)) {
             side_of_[h.idx()] = {number, true};
             side_of_[mesh_.opposite_halfedge_handle(h).idx()] = {number, false};

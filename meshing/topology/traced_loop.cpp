@@ -90,8 +90,8 @@ class Tracer {
         region_of_face_ = regions_between_curves(mesh_);
         std::map<int, int> votes;
         const auto anywhere = nearest(-1);
+        const double limit = std::max(0.1 * mesh_size_, longest_edge);
         for (std::size_t k = 0; k < anywhere.size(); ++k) {
-            const double limit = std::max(0.1 * mesh_size_, longest_edge);
             if (!anywhere[k].is_valid()) {
                 throw TopologyError("loop: the surface has no vertex that is free of curves");
             }
@@ -110,9 +110,43 @@ class Tracer {
                 return a.second < b.second;
             })->first;
         anchors_ = nearest(region);
+        check_side(region, limit);
         for (const auto face : mesh_.faces()) {
             if (region_of_face_[face.idx()] == region) faces_.push_back(face);
         }
+    }
+
+    // Points may lie behind a curve by so much as they may lie off the surface.
+    void check_side(int region, double limit) const {
+        for (std::size_t k = 0; k < anchors_.size(); ++k) {
+            const Vector3& point = guide_.points[k];
+            if ((mesh_.point(anchors_[k]) - point).norm() <= limit) continue;
+            throw TopologyError(
+                "loop: point {} at ({:.6g}, {:.6g}, {:.6g}) lies on the other side of curve {} "
+                "than most of its points; given loops must not cross: move the points of one of "
+                "the two or leave it out",
+                k, point.x(), point.y(), point.z(), curve_beside(region, point));
+        }
+    }
+
+    // Of the curves that bound a region, the one nearest to a point.
+    [[nodiscard]] int curve_beside(int region, const Vector3& point) const {
+        int nearest_curve = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto edge : mesh_.edges()) {
+            if (mesh_.data(edge).curve < 0) continue;
+            const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
+            const HalfedgeHandle twin = mesh_.opposite_halfedge_handle(h);
+            if (region_of_face_[mesh_.face_handle(h).idx()] != region &&
+                region_of_face_[mesh_.face_handle(twin).idx()] != region) {
+                continue;
+            }
+            const double distance = (mesh_.point(mesh_.from_vertex_handle(h)) - point).norm();
+            if (distance >= least) continue;
+            least = distance;
+            nearest_curve = mesh_.data(edge).curve;
+        }
+        return nearest_curve;
     }
 
     [[nodiscard]] double factor(const Vector3& x) const {

@@ -131,8 +131,21 @@ TEST_CASE("info: surfaces and parts are described, with problems too", "[drivers
     const auto part = run_couture("info plate_with_two_holes", folder.path());
     CHECK(part.exit_code == 0);
     CHECK_THAT(part.output, Contains("problems: none") && Contains("genus 2"));
+    // Corners, by names that decks can use, with their places.
+    const auto plate = run_couture("info plate", folder.path());
+    CHECK_THAT(plate.output, Contains("corner x_high-y_high-z_high: (50, 200, 10)\n"));
+    const auto corners =
+        nlohmann::json::parse(run_couture("info plate --json", folder.path()).output)["corners"];
+    CHECK(corners.size() == 8);
+    CHECK(corners["x_high-y_high-z_high"] == nlohmann::json({50.0, 200.0, 10.0}));
+    CHECK(corners["x_low-y_low-z_low"] == nlohmann::json({-50.0, 0.0, 0.0}));
     const auto touching = run_couture("info bad.off --fix", folder.path());
     CHECK_THAT(touching.output, Contains("1 vertex copied where parts touched at it"));
+    const auto refused = run_couture("mesh bad.off --fix --stage surface", folder.path());
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.errors, Contains("--fix gave parts that touch a vertex each, but they still "
+                                        "lie in one place") &&
+                                   Contains("--shell N"));
     io::write_text(folder.path() / "a.step", "x");
     const auto unknown = run_couture("info a.step", folder.path());
     CHECK(unknown.exit_code == 2);

@@ -26,6 +26,25 @@ GuideLoop circle_across(double x, double y, double r, int n) {
     return guide;
 }
 
+GuideLoop guide_of(const SurfaceMesh& mesh, const PantsCurve& curve) {
+    GuideLoop guide;
+    for (const VertexHandle v : curve.curve.vertices) guide.points.push_back(mesh.point(v));
+    return guide;
+}
+
+Vector3 highest(const SurfaceMesh& mesh) {
+    Vector3 high = mesh.point(VertexHandle(0));
+    for (const auto vertex : mesh.vertices()) high = high.cwiseMax(mesh.point(vertex));
+    return high;
+}
+
+Vector3 nearest_point(const SurfaceMesh& mesh, const Vector3& target) {
+    return *std::min_element(mesh.points(), mesh.points() + mesh.n_vertices(),
+                             [&](const Vector3& a, const Vector3& b) {
+                                 return (a - target).norm() < (b - target).norm();
+                             });
+}
+
 // A tube about the x axis, open at both ends; its meridians are circles of radius 1.
 SurfaceMesh make_tube(int around, int along) {
     TriangleSoup soup;
@@ -44,6 +63,19 @@ SurfaceMesh make_tube(int around, int along) {
         }
     }
     return make_surface_mesh(soup);
+}
+
+// Of the double torus: between its two holes, in the plane of symmetry.
+GuideLoop waist(const SurfaceMesh& mesh) {
+    double low = 0.0;
+    double high = 0.0;
+    for (const auto vertex : mesh.vertices()) {
+        const Vector3& x = mesh.point(vertex);
+        if (std::abs(x.x()) > default_edge_length("double_torus")) continue;
+        low = std::min(low, x.y());
+        high = std::max(high, x.y());
+    }
+    return circle_across(0.0, 0.5 * (high + low), 0.5 * (high - low), 12);
 }
 
 }  // namespace
@@ -92,20 +124,9 @@ TEST_CASE("pants: loops that are given are cut first", "[topology][parts]") {
     Member member = make_member("double_torus", {}, 0.0, false);
     const PantsDecomposition plain = decompose_into_pants(member.mesh);
     REQUIRE(plain.curves.size() == 3);
-    // Between the two holes, in the plane of symmetry.
-    const double step = 2.0 * default_edge_length("double_torus");
-    double low = 0.0;
-    double high = 0.0;
-    for (const auto vertex : member.mesh.vertices()) {
-        const Vector3& x = member.mesh.point(vertex);
-        if (std::abs(x.x()) > 0.5 * step) continue;
-        low = std::min(low, x.y());
-        high = std::max(high, x.y());
-    }
     Member fresh = make_member("double_torus", {}, 0.0, false);
     PantsOptions options;
-    const double radius = 0.5 * (high - low);
-    options.loops.push_back(circle_across(0.0, 0.5 * (high + low), radius, 12));
+    options.loops.push_back(waist(member.mesh));
     const PantsDecomposition pants = decompose_into_pants(fresh.mesh, options);
     REQUIRE(pants.curves.size() == 3);
     REQUIRE(pants.curves[0].kind == PantsCurveKind::cycle);
@@ -113,7 +134,7 @@ TEST_CASE("pants: loops that are given are cut first", "[topology][parts]") {
     REQUIRE(pants.curves[1].kind == PantsCurveKind::handle);
     REQUIRE(pants.curves[2].kind == PantsCurveKind::handle);
     for (const VertexHandle vertex : pants.curves[0].curve.vertices) {
-        REQUIRE(std::abs(fresh.mesh.point(vertex).x()) < 2.0 * step);
+        REQUIRE(std::abs(fresh.mesh.point(vertex).x()) < 4.0 * default_edge_length("double_torus"));
     }
     // Each hole's handle joins a pant with itself.
     REQUIRE(pants.patches.size() == 2);
@@ -139,16 +160,53 @@ TEST_CASE("pants: loops that are no cuts are refused", "[topology][parts]") {
     }
     SECTION("beside each other") {
         PantsOptions options;
-        GuideLoop loop;
-        for (const VertexHandle v : plain.curves[0].curve.vertices) {
-            loop.points.push_back(member.mesh.point(v));
-        }
+        const GuideLoop loop = guide_of(member.mesh, plain.curves[0]);
         GuideLoop beside = loop;
         for (Vector3& x : beside.points) x.x() += 3.0 * default_edge_length("double_torus");
         options.loops = {loop, beside};
         Member fresh = make_member("double_torus", {}, 0.0, false);
         REQUIRE_THROWS_WITH(decompose_into_pants(fresh.mesh, options),
                             Catch::Contains("a cylinder is cut off by curve 0, 1"));
+    }
+    SECTION("twice") {
+        PantsOptions options;
+        const GuideLoop loop = guide_of(member.mesh, plain.curves[0]);
+        GuideLoop turned = loop;
+        std::rotate(turned.points.begin(), turned.points.begin() + 2, turned.points.end());
+        std::reverse(turned.points.begin(), turned.points.end());
+        options.loops = {loop, turned};
+        Member fresh = make_member("double_torus", {}, 0.0, false);
+        REQUIRE_THROWS_WITH(decompose_into_pants(fresh.mesh, options),
+                            "pants: curves 0 and 1 are the same loop; give it once");
+    }
+    SECTION("across each other") {
+        PantsOptions options;
+        // The outline, seen from above, passes the waist twice.
+        GuideLoop outline;
+        const Vector3 high = highest(member.mesh);
+        for (int k = 0; k < 40; ++k) {
+            const double t = 2.0 * std::numbers::pi * k / 40;
+            const Vector3 target(2.0 * high.x() * std::cos(t), 2.0 * high.y() * std::sin(t), 0.0);
+            outline.points.push_back(nearest_point(member.mesh, target));
+        }
+        options.loops = {waist(member.mesh), outline};
+        Member fresh = make_member("double_torus", {}, 0.0, false);
+        REQUIRE_THROWS_WITH(decompose_into_pants(fresh.mesh, options),
+                            Catch::Contains("pants: curve 1: loop: point ") &&
+                                Catch::Contains("lies on the other side of curve 0") &&
+                                Catch::Contains("must not cross"));
+    }
+    SECTION("too few, if no others are to be made") {
+        PantsOptions options;
+        const auto handle = std::find_if(
+            plain.curves.begin(), plain.curves.end(),
+            [](const PantsCurve& curve) { return curve.kind == PantsCurveKind::handle; });
+        options.loops = {guide_of(member.mesh, *handle)};
+        options.only_given_loops = true;
+        Member fresh = make_member("double_torus", {}, 0.0, false);
+        REQUIRE_THROWS_WITH(
+            decompose_into_pants(fresh.mesh, options),
+            Catch::Contains("the cuts leave 1 of 2 handles") && Catch::Contains("add 1"));
     }
     SECTION("around a disc") {
         PantsOptions options;
