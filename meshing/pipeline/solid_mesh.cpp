@@ -99,6 +99,13 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     say("moving nodes");
     RelocatedSamples relocated =
         relocate_nodes(mesh, surface, sample_layout_map(mesh, surface, *solid.map));
+    if (relocated.report.n_inverted > 0) {
+        throw GeometryError(
+            "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
+            "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, loop) "
+            "or templates help, or smaller elements",
+            relocated.report.n_inverted);
+    }
     solid.relocation = relocated.report;
     solid.quads = std::move(relocated.samples);
     solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), mesh);

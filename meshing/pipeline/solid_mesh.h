@@ -56,7 +56,8 @@ struct SolidMesh {
 /// whose nodes have moved to better places, splines.
 ///
 /// @param opened, features, pants, caps, library  as decompose_into_cuboids
-/// @throws InputError  for options out of range, and as the stages
+/// @throws InputError     for options out of range, and as the stages
+/// @throws GeometryError  if quads stay turned over, and as the stages
 ///
 /// Source: [Maquart19] Fig. 4.12, Sec. 6.3.5.
 [[nodiscard]] SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
