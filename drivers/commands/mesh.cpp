@@ -172,7 +172,8 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                         {"certificate", iga::to_string(report.parameterization.validity)},
                         {"min_scaled_jacobian", report.quality.min_scaled_jacobian},
                         {"mean_scaled_jacobian", report.quality.mean_scaled_jacobian},
-                        {"max_distance", report.max_distance}};
+                        {"hausdorff", solid.distance->surface},
+                        {"hausdorff_features", solid.distance->features}};
 }
 
 nlohmann::ordered_json to_json(const MeshStages& stages) {
@@ -272,10 +273,10 @@ void print_solid(const meshing::SolidMesh& solid) {
     const auto& report = solid.volume->report;
     fmt::print(
         "volume    {} patches, {} control points; det J {}, scaled Jacobian from {:.3f}, mean "
-        "{:.3f}; splines up to {:.3g} from the surface\n",
+        "{:.3f}\ndistance  of splines and surface {:.2e} of its diagonal, of sharp edges {:.2e}\n",
         solid.volume->volume.n_patches(), solid.volume->volume.n_control_points(),
         iga::to_string(report.parameterization.validity), report.quality.min_scaled_jacobian,
-        report.quality.mean_scaled_jacobian, report.max_distance);
+        report.quality.mean_scaled_jacobian, solid.distance->surface, solid.distance->features);
 }
 
 void print_text(const MeshStages& stages, MeshStage last) {

@@ -6,42 +6,19 @@
 #include <limits>
 
 #include "iga/core/error.h"
-#include "meshing/surface/triangle_tree.h"
+#include "meshing/surface/surface_distance.h"
 
 namespace couture::meshing {
 
 namespace {
 
-using Triangles = std::vector<std::array<Vector3, 3>>;
-
-Triangles triangles_of(const QuadMesh& mesh) {
-    Triangles triangles;
+std::vector<SpaceTriangle> triangles_of(const QuadMesh& mesh) {
+    std::vector<SpaceTriangle> triangles;
     for (const auto& [a, b, c, d] : mesh.quads) {
         triangles.push_back({mesh.points[a], mesh.points[b], mesh.points[c]});
         triangles.push_back({mesh.points[a], mesh.points[c], mesh.points[d]});
     }
     return triangles;
-}
-
-Triangles triangles_of(const SurfaceMesh& mesh) {
-    Triangles triangles;
-    for (const FaceHandle face : mesh.faces()) {
-        const auto [a, b, c] = face_vertices(mesh, face);
-        triangles.push_back({mesh.point(a), mesh.point(b), mesh.point(c)});
-    }
-    return triangles;
-}
-
-// From the corners and centres of some triangles to others.
-double one_sided_distance(const Triangles& from, const TriangleTree& to) {
-    double largest = 0.0;
-    for (const auto& triangle : from) {
-        const Vector3 centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-        for (const Vector3& point : {triangle[0], triangle[1], triangle[2], centre}) {
-            largest = std::max(largest, to.nearest(point).squared_distance);
-        }
-    }
-    return std::sqrt(largest);
 }
 
 }  // namespace
@@ -79,11 +56,9 @@ QuadQuality quad_quality(const QuadMesh& quads, const SurfaceMesh& mesh) {
     const auto n = static_cast<double>(quads.quads.size());
     quality.mean_scaled_jacobian /= n;
     quality.mean_edge_ratio /= n;
-    const Triangles of_quads = triangles_of(quads);
-    const Triangles of_surface = triangles_of(mesh);
-    quality.hausdorff_distance = std::max(one_sided_distance(of_quads, TriangleTree(of_surface)),
-                                          one_sided_distance(of_surface, TriangleTree(of_quads))) /
-                                 bounding_box_diagonal(mesh);
+    quality.hausdorff_distance =
+        hausdorff_distance(triangles_of(quads), meshing::triangles_of(mesh)) /
+        bounding_box_diagonal(mesh);
     return quality;
 }
 

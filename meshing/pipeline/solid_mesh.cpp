@@ -104,7 +104,8 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
             "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
-            "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, loop) "
+            "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
+            "loop) "
             "or templates help, or smaller elements",
             relocated.report.n_inverted);
     }
@@ -119,6 +120,7 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     solid.volume = make_layout_volume(
         solid.cuboids.volume,
         refine_samples(mesh, surface, *solid.quads, options.samples_per_element), volume);
+    solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
     return solid;
 }
 

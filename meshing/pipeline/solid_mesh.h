@@ -11,6 +11,7 @@
 #include "meshing/parameterization/layout_map.h"
 #include "meshing/parameterization/node_relocation.h"
 #include "meshing/parameterization/sample_quality.h"
+#include "meshing/pipeline/volume_distance.h"
 #include "meshing/volume/layout_volume.h"
 
 namespace couture::meshing {
@@ -50,6 +51,7 @@ struct SolidMesh {
     std::optional<NodeRelocationReport> relocation;
     std::optional<QuadQuality> quad_quality;
     std::optional<LayoutVolume> volume;
+    std::optional<VolumeDistance> distance;
 };
 
 /// From a surface that is cut into pants to trivariate splines: cuboids, aligned global map, quads
