@@ -24,10 +24,16 @@ double nearest_fraction(const Vector3& point, const Vector3& a, const Vector3& b
 }  // namespace
 
 Vector3 nearest_weights(const Vector3& point, const std::array<Vector3, 3>& triangle) {
-    const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    // Of a triangle that is a segment but for rounding the edges are enough.
+    constexpr double smallest_sine = 1e-12;
+    const Vector3 along = triangle[1] - triangle[0];
+    const Vector3 across = triangle[2] - triangle[0];
+    const Vector3 normal = along.cross(across);
     const double area = normal.squaredNorm();
+    const bool has_area =
+        area > smallest_sine * smallest_sine * along.squaredNorm() * across.squaredNorm();
     Vector3 inside = Vector3::Constant(-1.0);
-    for (int k = 0; k < 3 && area > 0.0; ++k) {
+    for (int k = 0; k < 3 && has_area; ++k) {
         const Vector3& a = triangle[(k + 1) % 3];
         const Vector3& b = triangle[(k + 2) % 3];
         inside[k] = (b - a).cross(point - a).dot(normal) / area;

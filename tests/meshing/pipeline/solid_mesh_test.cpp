@@ -1,0 +1,60 @@
+#include "meshing/pipeline/solid_mesh.h"
+
+#include <catch2/catch.hpp>
+
+#include "iga/core/error.h"
+#include "iga/topology/jacobian_certificate.h"
+#include "tests/meshing/layout/cut_parts.h"
+
+using namespace couture;
+using namespace couture::meshing;
+
+TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pipeline]") {
+    const std::string name = GENERATE("pant", "half_seal", "seal", "cylinder", "double_t");
+    const int degree = GENERATE(2, 3);
+    CAPTURE(name, degree);
+    const Job job = cut_part(name);
+    SolidMeshOptions options;
+    options.volume.degree = degree;
+    const SolidMesh solid =
+        mesh_solid(job.opened, job.features, job.pants, job.caps, some_templates(), options);
+    CHECK(solid.map->report.n_flipped == 0);
+    const auto& report = solid.volume->report;
+    CHECK(report.parameterization.validity == iga::Validity::valid);
+    CHECK(report.quality.min_scaled_jacobian > 0.7);
+    CHECK(report.quality.mean_scaled_jacobian > 0.9);
+    CHECK(solid.distance->surface < 1e-3);
+    CHECK(solid.distance->features < 5e-4);
+    iga::check(solid.volume->volume, 1e-12);
+    const auto n_caps =
+        std::ranges::count(job.pants.curves, PantsCurveKind::boundary, &PantsCurve::kind);
+    CHECK(static_cast<std::ptrdiff_t>(solid.volume->volume.boundary_sets.size()) == n_caps);
+    const auto refined =
+        iga::refine<3>(solid.volume->volume, std::nullopt, std::array<int, 3>{8, 8, 8});
+    for (const auto& patch : refined.patches) {
+        CHECK(iga::certify(patch).validity == iga::Validity::valid);
+    }
+}
+
+TEST_CASE("mesh_solid: stages end where they are asked to, options are checked", "[pipeline]") {
+    const Job job = cut_part("pant");
+    SolidMeshOptions options;
+    const auto run = [&] {
+        return mesh_solid(job.opened, job.features, job.pants, job.caps, some_templates(), options);
+    };
+    options.last = SolidStage::layout;
+    CHECK_FALSE(run().map);
+    options.last = SolidStage::quads;
+    const SolidMesh quads = run();
+    CHECK(quads.quads);
+    CHECK_FALSE(quads.volume);
+    options.elements = quads.elements;
+    options.elements.pop_back();
+    CHECK_THROWS_AS(run(), InputError);
+    options.elements = {};
+    options.samples_per_element = 1;
+    CHECK_THROWS_AS(run(), InputError);
+    options.samples_per_element = 4;
+    options.element_size = -1.0;
+    CHECK_THROWS_AS(run(), InputError);
+}
