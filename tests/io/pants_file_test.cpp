@@ -20,7 +20,7 @@ TEST_CASE("pants record: what is written is read again, to the last bit", "[io]"
     const io::TemporaryFolder folder;
     const auto path = folder / "pants.json";
     io::write_pants_record(path, record, "here");
-    const PantsRecord again = io::read_pants_record(path);
+    const PantsRecord again = io::read_member_record(path).pants;
     REQUIRE(again.shells.size() == 1);
     CHECK(again.shells[0].genus == 2);
     CHECK(again.shells[0].center == record.shells[0].center);
@@ -46,7 +46,7 @@ TEST_CASE("pants record: files that hold something else are refused", "[io]") {
     const auto refused = [&](const std::string& text, const std::string& message) {
         io::write_text(path, text);
         CAPTURE(text);
-        CHECK_THROWS_WITH(io::read_pants_record(path),
+        CHECK_THROWS_WITH(io::read_member_record(path),
                           Contains("pants.json: ") && Contains(message));
     };
     refused("", "no JSON from byte");
@@ -72,5 +72,5 @@ TEST_CASE("pants record: files that hold something else are refused", "[io]") {
             "curves[0].points[0] has 2 numbers");
     refused(good + R"("curves": [{"kind": "cycle", "name": "", "points": [], "normals": []}]})",
             "curves[0] has 0 points");
-    CHECK_THROWS_AS(io::read_pants_record(folder / "no.json"), FileError);
+    CHECK_THROWS_AS(io::read_member_record(folder / "no.json"), FileError);
 }
