@@ -145,6 +145,37 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     return deck;
 }
 
+bool is_certified(const meshing::SolidMesh& solid) {
+    return !solid.volume ||
+           solid.volume->report.parameterization.validity <= iga::Validity::degenerate;
+}
+
+void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) {
+    object["layout"] = {{"cuboids", solid.cuboids.volume.n_cuboids()},
+                        {"quads", solid.cuboids.surface.layout.n_quads()},
+                        {"templates", solid.cuboids.templates}};
+    if (solid.map) {
+        const auto& report = solid.map->report;
+        object["map"] = {{"energy", report.energies}, {"flipped", report.n_flipped}};
+    }
+    if (solid.quads) {
+        object["quads"] = {{"energy", solid.relocation->energies},
+                           {"largest_move", solid.relocation->largest_move},
+                           {"min_scaled_jacobian", solid.quad_quality->smallest_scaled_jacobian},
+                           {"mean_scaled_jacobian", solid.quad_quality->mean_scaled_jacobian},
+                           {"hausdorff", solid.quad_quality->hausdorff_distance}};
+    }
+    if (!solid.volume) return;
+    const auto& report = solid.volume->report;
+    object["volume"] = {{"patches", solid.volume->volume.n_patches()},
+                        {"control_points", solid.volume->volume.n_control_points()},
+                        {"signature", iga::signature(solid.volume->volume)},
+                        {"certificate", iga::to_string(report.parameterization.validity)},
+                        {"min_scaled_jacobian", report.quality.min_scaled_jacobian},
+                        {"mean_scaled_jacobian", report.quality.mean_scaled_jacobian},
+                        {"max_distance", report.max_distance}};
+}
+
 nlohmann::ordered_json to_json(const MeshStages& stages) {
     const auto& invariants = stages.invariants;
     nlohmann::ordered_json object = {{"surface",
@@ -196,6 +227,7 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
         }
         patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
     }
+    if (stages.solid) add_solid(*stages.solid, object);
     return object;
 }
 
@@ -290,6 +322,13 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     const Timer timer;
     const MeshStages stages = run_mesh_stages(deck, folder / (name + "_problems.vtp"));
     const double seconds = timer.seconds();
+    const bool is_done = !stages.solid || is_certified(*stages.solid);
+    if (!is_done) {
+        log::warn(
+            fmt::format("the volume is {}: det J is not positive everywhere in patch {}",
+                        iga::to_string(stages.solid->volume->report.parameterization.validity),
+                        stages.solid->volume->report.parameterization.worst_patch));
+    }
     const std::string provenance =
         fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
                     deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));
@@ -305,7 +344,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     if (common.json) {
         auto object = to_json(stages);
         object["program"] = "couture " COUTURE_VERSION;
-        object["status"] = "done";
+        object["status"] = is_done ? "done" : "failed";
         object["seconds"] = seconds;
         object["warnings"] = log::warnings();
         object["files"] = files;
@@ -316,7 +355,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
         for (const std::string& file : files) fmt::print(" {}", file);
         fmt::print("\n");
     }
-    return ExitCode::done;
+    return is_done ? ExitCode::done : ExitCode::run_failed;
 }
 
 }  // namespace couture::drivers

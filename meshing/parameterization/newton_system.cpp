@@ -1,14 +1,16 @@
 #include "meshing/parameterization/newton_system.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 
 #include "iga/core/error.h"
+#include "iga/linalg/sparse_solver.h"
 
 namespace couture::meshing {
 
 struct NewtonSystem::Factor {
-    Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> cholesky;
+    // Rows of the upper triangle: the columns of matrix_.
+    iga::BlockMatrix matrix;
+    std::unique_ptr<iga::LinearSolver> solver;
 };
 
 NewtonSystem::NewtonSystem(int n_unknowns, std::vector<Element> elements)
@@ -43,7 +45,12 @@ NewtonSystem::NewtonSystem(int n_unknowns, std::vector<Element> elements)
             }
         }
     }
-    factor_->cholesky.analyzePattern(matrix_);
+    factor_->matrix.n_rows = n_unknowns;
+    factor_->matrix.row_begin.assign(begin, begin + n_unknowns + 1);
+    factor_->matrix.columns.assign(rows, rows + matrix_.nonZeros());
+    iga::SolverOptions options;
+    options.name = "cholmod";
+    factor_->solver = iga::make_linear_solver(options);
 }
 
 NewtonSystem::NewtonSystem(NewtonSystem&&) noexcept = default;
@@ -73,15 +80,15 @@ VectorX NewtonSystem::step() {
     for (Eigen::Index i = 0; i < matrix_.cols(); ++i) {
         largest = std::max(largest, matrix_.valuePtr()[matrix_.outerIndexPtr()[i]]);
     }
-    factor_->cholesky.setShift(regularization * largest);
-    factor_->cholesky.factorize(matrix_);
-    if (factor_->cholesky.info() != Eigen::Success) {
-        throw SolverError(
-            "NewtonSystem: the Hessian of {} unknowns is not positive definite; its largest "
-            "diagonal entry is {}",
-            gradient_.size(), largest);
+    for (Eigen::Index i = 0; i < matrix_.cols(); ++i) {
+        matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] += regularization * largest;
     }
-    return factor_->cholesky.solve(-gradient_);
+    factor_->matrix.values =
+        Buffer<double>(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
+    factor_->solver->factorize({.matrix = factor_->matrix, .is_fixed = {}, .near_null_space = {}});
+    MatrixX step;
+    factor_->solver->solve(-gradient_, step);
+    return step.col(0);
 }
 
 }  // namespace couture::meshing

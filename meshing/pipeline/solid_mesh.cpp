@@ -109,6 +109,8 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     split_layout_chords(mesh, surface);
     LayoutMapOptions map_options;
     map_options.is_optimised = options.is_aligned;
+    // Nodes move on from here.
+    map_options.tolerance = 1e-4;
     solid.map = make_layout_map(mesh, surface, cells_of_surface(surface.layout, cells, elements),
                                 map_options);
     if (options.last == SolidStage::map) return solid;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "meshing/layout/layout_validity.h"
 #include "meshing/layout/polycube_templates.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/topology/invariants.h"
@@ -38,8 +39,36 @@ struct Job {
     ClosingCaps caps;
 };
 
+// Around both spokes of the wheel.
+std::vector<GuideLoop> wheel_loops() {
+    std::vector<GuideLoop> loops;
+    for (const double side : {1.0, -1.0}) {
+        GuideLoop& loop = loops.emplace_back();
+        const std::vector<std::array<double, 3>> points{
+            {40.0, 20.71875, 0.0},  {31.8, 31.8, 4.46875},  {0.0, 45.0, 4.46875},
+            {-31.8, 31.8, 4.46875}, {-40.0, 20.71875, 0.0}, {-31.8, 31.8, -4.46875},
+            {0.0, 45.0, -4.46875},  {31.8, 31.8, -4.46875}};
+        for (const auto& [x, y, z] : points) loop.points.emplace_back(x, side * y, z);
+    }
+    return loops;
+}
+
+// Around the walls of the casting between its bore and its bolt holes.
+std::vector<GuideLoop> casting_loops() {
+    const std::vector<std::array<double, 2>> section{
+        {30.0, 0.0},  {60.0, 0.0},   {68.5, 10.0},  {60.0, 20.0},  {45.0, 20.0},
+        {37.5, 50.0}, {37.5, 100.0}, {30.0, 150.0}, {22.5, 100.0}, {22.5, 50.0}};
+    std::vector<GuideLoop> loops;
+    for (const auto& [x, y] :
+         std::vector<std::array<double, 2>>{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+        GuideLoop& loop = loops.emplace_back();
+        for (const auto& [r, z] : section) loop.points.emplace_back(r * x, r * y, z);
+    }
+    return loops;
+}
+
 // A part, opened at its caps and cut into pants.
-Job cut_part(const std::string& name) {
+Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops = {}) {
     const PartSurface part = make_part_surface(name);
     SurfaceMesh closed = make_surface_mesh(part.soup);
     const Features features = detect_features(closed);
@@ -56,7 +85,9 @@ Job cut_part(const std::string& name) {
     job.opened = make_surface_mesh(opened.soup);
     job.caps = caps_of(closed, opened);
     job.features = detect_features(job.opened);
-    PantsOptions named{.cycle = {.sharp = -0.75}};
+    PantsOptions named;
+    named.cycle.sharp = -0.75;
+    named.loops = loops;
     for (const BoundaryLoop& loop : boundary_loops(job.opened)) {
         named.boundary_names.push_back(caps[opened.cap_of_vertex[loop.vertices[0].idx()]].name);
     }
@@ -80,12 +111,26 @@ TEST_CASE("cuboid decomposition: parts with one pant", "[layout]") {
 }
 
 TEST_CASE("cuboid decomposition: parts with several", "[layout]") {
-    const auto [name, n_cuboids] = GENERATE(
-        table<std::string, int>({{"double_t", 8}, {"seal", 20}, {"wheel", 76}, {"casting", 8}}));
+    const auto [name, loops, n_cuboids, genus] =
+        GENERATE(table<std::string, std::vector<GuideLoop>, int, int>(
+            {{"double_t", {}, 8, 0},
+             {"seal", {}, 20, 1},
+             {"wheel", wheel_loops(), 76, 3},
+             {"casting", casting_loops(), 56, 5}}));
     CAPTURE(name);
-    const Job job = cut_part(name);
+    const Job job = cut_part(name, loops);
     const CuboidDecomposition cuboids =
         decompose_into_cuboids(job.opened, job.features, job.pants, job.caps, some_templates());
     CHECK(cuboids.volume.n_cuboids() == n_cuboids);
+    CHECK(volume_topology(cuboids.volume).genera == std::vector<int>{genus});
     check_embedding(cuboids.mesh, cuboids.surface);
+}
+
+TEST_CASE("cuboid decomposition: a patch without a template is named", "[layout]") {
+    const Job job = cut_part("half_seal");
+    TemplateLibrary library;
+    library.add(make_bar_template("tee", {{0, 0}}, {{{0, 0}}}));
+    CHECK_THROWS_WITH(
+        decompose_into_cuboids(job.opened, job.features, job.pants, job.caps, library),
+        Catch::Contains("no template fits patch 0") && Catch::Contains("caps: tee."));
 }
