@@ -284,7 +284,7 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     options.only_handles = last == MeshStage::loops;
     if (surface.record) {
         stages.pants = replay_pants(stages.mesh, surface.record->pants, surface.boundary_names,
-                                    surface.landmarks);
+                                    surface.landmarks, deck.pants.loop_width);
     } else {
         stages.pants = decompose_into_pants(stages.mesh, options);
     }

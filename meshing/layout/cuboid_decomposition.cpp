@@ -197,6 +197,40 @@ class Drawing {
     GluedLayout glued_;
 };
 
+// Whether a recorded choice names nodes and arcs that its templates have, and all cuts.
+void check_choice(const LayoutChoice& choice, const PantsDecomposition& pants,
+                  const TemplateLibrary& library) {
+    for (std::size_t p = 0; p < choice.matches.size(); ++p) {
+        const CuboidTemplate& shape = library.find(choice.templates[p]);
+        const TemplateMatch& match = choice.matches[p];
+        const QuadLayout wall = wall_of(shape).layout;
+        const auto is_node = [&](int n) { return n < shape.layout.n_nodes; };
+        bool is_right = std::ranges::all_of(match.nodes, is_node) &&
+                        std::ranges::all_of(match.caps, [&](int c) { return c < shape.n_caps(); });
+        for (const auto& loop : match.loop_nodes) {
+            is_right = is_right && std::ranges::all_of(loop, is_node);
+        }
+        for (const auto& curve : match.curves) {
+            is_right = is_right && curve.size() >= 2 && std::ranges::all_of(curve, is_node);
+            for (std::size_t k = 0; is_right && k + 1 < curve.size(); ++k) {
+                is_right = wall.find_arc(curve[k], curve[k + 1]) >= 0;
+            }
+        }
+        if (is_right) continue;
+        throw TopologyError(
+            "layout: patch {} has nodes, arcs or caps in the record that its template '{}' lacks; "
+            "the record was made with another template of that name",
+            p, shape.name);
+    }
+    for (std::size_t c = 0; c < pants.curves.size(); ++c) {
+        if (pants.curves[c].kind == PantsCurveKind::boundary ||
+            choice.rotations.contains(static_cast<int>(c))) {
+            continue;
+        }
+        throw TopologyError("layout: cut {} has no rotation in the record", c);
+    }
+}
+
 // The sets of the recorded layout, if all are outer sides here.
 void repeat_sets(const LayoutRecord& record, const std::vector<CuboidSide>& outer_sides,
                  VolumetricLayout& volume) {
@@ -232,6 +266,7 @@ CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& fe
                                    const TemplateLibrary& library, const LayoutRecord& record) {
     std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
     const LayoutChoice choice = repeat_choice(opened, record, patches);
+    check_choice(choice, pants, library);
     CuboidDecomposition result = Drawing(opened, patches, pants, caps, library, choice).run();
     repeat_sets(record, result.sides, result.volume);
     result.record = record_layout(opened, patches, choice);
