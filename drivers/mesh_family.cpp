@@ -306,11 +306,10 @@ int mesh_family(const io::MeshDeck& deck, const MeshOptions& options, const Comm
         fmt::print("{}\n", object.dump(2));
     } else if (!common.quiet) {
         print_text(results);
-        fmt::print(
-            "{} of {} members done, midpoints of {} not certified; {:.1f} s; wrote {} files "
-            "to {}\n",
-            results.size() - n_failed, results.size(), n_folded, seconds, family.files().size(),
-            folder.string());
+        fmt::print("{} of {} members done, midpoints of {} not certified\n",
+                   results.size() - n_failed, results.size(), n_folded);
+        fmt::print("{:.1f} s; wrote {} files to {}\n", seconds, family.files().size(),
+                   folder.string());
     }
     return is_done ? ExitCode::done : ExitCode::run_failed;
 }
