@@ -147,8 +147,10 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--element-size", mesh->element_size,
                     "length of a spline element (default: a twentieth of the diagonal)");
     sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
-    sub->add_option("--like", mesh->like,
-                    "cut as another member of the family was: its NAME_pants.json")
+    sub->add_option(
+           "--like", mesh->like,
+           "cut as another member of the family was: its NAME_pants.json; or NAME_layout.json: "
+           "also with its cuboids")
         ->check(CLI::ExistingFile);
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");

@@ -19,6 +19,7 @@
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 #include "meshing/surface/cut_surface.h"
+#include "meshing/topology/member_warp.h"
 
 namespace couture::drivers {
 
@@ -268,13 +269,12 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         log::info(fmt::format("mesh: {} ({:.0f} %, {:.0f} s)", what, 100.0 * fraction, last_said));
     };
     MeshStages stages;
+    if (last >= MeshStage::features) stages.features = find_features(deck, surface);
     stages.mesh = std::move(surface.mesh);
+    stages.part = std::move(surface.part);
     stages.invariants = compute_invariants(stages.mesh);
     stages.surface_name = surface_name(stages.mesh);
     check_gauss_bonnet(stages.mesh);
-    if (last >= MeshStage::features) {
-        stages.features = detect_features(stages.mesh, deck.features);
-    }
     if (last < MeshStage::loops) return stages;
     std::optional<ClosingCaps> caps = surface.caps;
     if (last > MeshStage::pants) {
@@ -283,8 +283,8 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     }
     options.only_handles = last == MeshStage::loops;
     if (surface.record) {
-        stages.pants =
-            replay_pants(stages.mesh, *surface.record, surface.boundary_names, surface.landmarks);
+        stages.pants = replay_pants(stages.mesh, surface.record->pants, surface.boundary_names,
+                                    surface.landmarks, deck.pants.loop_width);
     } else {
         stages.pants = decompose_into_pants(stages.mesh, options);
     }
@@ -296,6 +296,11 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     solid.progress = [&](std::string_view what) {
         log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
     };
+    solid.faces = std::move(surface.faces);
+    if (surface.record && surface.record->layout) {
+        solid.like = carry_over(*surface.record->layout,
+                                MemberWarp(surface.record->pants, stages.mesh, surface.landmarks));
+    }
     TemplateLibrary library = io::built_in_templates();
     if (!deck.templates.empty()) io::add_templates(deck.templates, library);
     stages.solid = mesh_solid(stages.mesh, stages.features, *stages.pants, *caps, library, solid);
@@ -306,7 +311,14 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
                                                     const MeshStages& stages, MeshStage stage,
                                                     bool png, const std::string& provenance) {
     if (stage > MeshStage::pants) {
-        return write_solid_stage(stem, *stages.solid, solid_stage(stage), png, provenance);
+        std::vector<std::filesystem::path> files =
+            write_solid_stage(stem, *stages.solid, solid_stage(stage), png, provenance);
+        if (stage == MeshStage::layout) {
+            files.push_back(stem.string() + ".json");
+            io::write_layout_record(files.back(), *stages.record, stages.solid->cuboids.record,
+                                    provenance);
+        }
+        return files;
     }
     const std::vector<io::SurfaceLine> lines = lines_of(stages, stage);
     const std::vector<int> part = part_of_face(stages, stage);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "meshing/parts/part_surface.h"
 #include "meshing/pipeline/solid_mesh.h"
 #include "meshing/surface/features.h"
 #include "meshing/surface/surface_mesh.h"
@@ -23,6 +24,8 @@ enum class MeshStage { surface, features, loops, pants, layout, map, quads, volu
 
 /// What the stages made of a surface.
 struct MeshStages {
+    /// If the deck names one.
+    std::optional<meshing::PartSurface> part;
     meshing::SurfaceMesh mesh;
     meshing::SurfaceInvariants invariants;
     std::string surface_name;

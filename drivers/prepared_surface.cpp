@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -96,13 +97,44 @@ std::vector<Cap> select_caps(const io::MeshDeck& deck, const io::CapSelection& o
 }
 
 // What a deck opens: what it says, or what was open on the member that it is cut like.
-io::CapSelection caps_to_open(const io::MeshDeck& deck, const std::optional<PantsRecord>& record) {
+io::CapSelection caps_to_open(const io::MeshDeck& deck, const std::optional<MemberRecord>& record) {
     io::CapSelection open = deck.open;
     if (!record || deck.part.empty() || !open.is_empty()) return open;
-    for (const auto& curve : record->curves) {
+    for (const auto& curve : record->pants.curves) {
         if (curve.kind == PantsCurveKind::boundary) open.names.push_back(curve.name);
     }
     return open;
+}
+
+// Faces of a part, or the smooth faces of a file.
+NamedFaces named_faces(const SurfaceMesh& closed, const Features& features,
+                       const std::optional<PartSurface>& part) {
+    NamedFaces faces{to_soup(closed), {}, {}};
+    if (part) {
+        faces.face_of_triangle = part->face_of_triangle;
+        for (const PartFace& face : part->faces) faces.names.push_back(face.name);
+        return faces;
+    }
+    for (const auto face : closed.faces()) {
+        faces.face_of_triangle.push_back(closed.data(face).region);
+    }
+    for (std::size_t r = 0; r < features.regions.size(); ++r) {
+        faces.names.push_back(fmt::format("face_{}", r + 1));
+    }
+    return faces;
+}
+
+// The name of the part's curve along each edge of it, by the numbers of the edge's vertices.
+std::map<std::pair<int, int>, std::string> names_of_edges(const PartSurface& part) {
+    std::map<std::pair<int, int>, std::string> names;
+    for (const PartCurve& curve : part.feature_curves) {
+        const std::size_t n = curve.vertices.size();
+        for (std::size_t k = 0; k + (curve.is_closed ? 0 : 1) < n; ++k) {
+            const auto [low, high] = std::minmax({curve.vertices[k], curve.vertices[(k + 1) % n]});
+            names[{low, high}] = curve.name;
+        }
+    }
+    return names;
 }
 
 }  // namespace
@@ -126,25 +158,52 @@ PreparedSurface prepare_surface(const io::MeshDeck& deck,
                                                                  .shell = deck.shell});
     const std::optional<PartSurface>& part = described.part;
     PreparedSurface surface;
-    if (!deck.like.empty()) surface.record = io::read_pants_record(deck.like);
+    if (!deck.like.empty()) surface.record = io::read_member_record(deck.like);
     surface.mesh = make_checked_mesh("mesh", described, problems_file);
     if (part) surface.landmarks = part_landmarks(*part);
+    surface.part = part;
+    const Features closed_features = detect_features(surface.mesh, deck.features);
+    if (compute_invariants(surface.mesh).n_boundaries == 0) {
+        surface.faces = named_faces(surface.mesh, closed_features, part);
+    }
     std::vector<Cap> caps;
     std::vector<int> cap_of_vertex(surface.mesh.n_vertices(), -1);
     const io::CapSelection open = caps_to_open(deck, surface.record);
     if (!open.is_empty()) {
-        const Features features = detect_features(surface.mesh, deck.features);
-        caps = select_caps(deck, open, part, surface.mesh, features);
-        OpenedSurface opened = open_caps(surface.mesh, features, caps);
+        caps = select_caps(deck, open, part, surface.mesh, closed_features);
+        OpenedSurface opened = open_caps(surface.mesh, closed_features, caps);
         surface.caps = caps_of(surface.mesh, opened);
         surface.mesh = make_surface_mesh(opened.soup);
         cap_of_vertex = std::move(opened.cap_of_vertex);
+        surface.closed_vertices = std::move(opened.vertices);
     }
     for (const BoundaryLoop& loop : boundary_loops(surface.mesh)) {
         const int cap = cap_of_vertex[loop.vertices.front().idx()];
         surface.boundary_names.push_back(cap >= 0 ? caps[cap].name : std::string());
     }
     return surface;
+}
+
+Features find_features(const io::MeshDeck& deck, PreparedSurface& surface) {
+    Features features = detect_features(surface.mesh, deck.features);
+    if (!surface.part) return features;
+    const auto on_part = [&](VertexHandle v) {
+        return surface.closed_vertices.empty() ? v.idx() : surface.closed_vertices[v.idx()];
+    };
+    const auto names = names_of_edges(*surface.part);
+    for (FeatureCurve& curve : features.curves) {
+        const auto [low, high] =
+            std::minmax({on_part(curve.vertices[0]), on_part(curve.vertices[1])});
+        const auto name = names.find({low, high});
+        if (name != names.end()) curve.name = name->second;
+    }
+    std::map<int, std::string> corners;
+    for (const PartCorner& corner : surface.part->corners) corners[corner.vertex] = corner.name;
+    for (const VertexHandle v : features.corners) {
+        const auto name = corners.find(on_part(v));
+        if (name != corners.end()) features.corner_names[v.idx()] = name->second;
+    }
+    return features;
 }
 
 PantsOptions pants_options(const io::MeshDeck& deck, const PreparedSurface& surface) {

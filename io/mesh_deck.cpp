@@ -189,6 +189,31 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     }
 }
 
+void read_family(Section& section, const fs::path& folder, MeshDeck& deck) {
+    FamilySection family;
+    if (section.has("parameters") == section.has("design")) {
+        section.mistake(section.has("design") ? "design" : "",
+                        "[family] needs either 'parameters' (a table of members, .csv) or 'design' "
+                        "(\"star\")");
+    }
+    read_existing_file(section, "parameters", folder, family.parameters);
+    static_cast<void>(section.choice("design", {"star"}));
+    if (section.has("level") && !section.has("design")) {
+        section.mistake("level", "'level' belongs to 'design'");
+    }
+    family.level = section.integer("level", 1, 2).value_or(family.level);
+    if (section.has("reference") && section.has("design")) {
+        section.mistake("reference", "of a 'design' the deck's own geometry is the reference");
+    }
+    family.reference = section.text("reference").value_or("");
+    if (!deck.like.empty()) {
+        section.mistake("",
+                        "[family] repeats its reference; 'like' of [meshing] has no place "
+                        "beside it");
+    }
+    deck.family = std::move(family);
+}
+
 }  // namespace
 
 bool is_mesh_deck(const fs::path& path) {
@@ -235,6 +260,18 @@ MeshDeck parse_mesh_deck(const std::string& text, const fs::path& path,
                     [&](Section& section) { read_surface_geometry(section, folder, deck); });
     }
     for_section(top, "meshing", [&](Section& section) { read_meshing(section, folder, deck); });
+    const TomlNode* meshing = document.find("meshing");
+    const bool has_stage = meshing != nullptr && meshing->find("stage") != nullptr;
+    for_section(top, "family", [&](Section& section) {
+        if (!has_stage) deck.stage = "volume";
+        if (deck.stage != "volume") {
+            section.mistake("",
+                            fmt::format("[family] makes volumes: leave 'stage' of [meshing] out "
+                                        "or set it to \"volume\", not \"{}\"",
+                                        deck.stage));
+        }
+        read_family(section, folder, deck);
+    });
     top.finish();
     context.mistakes.throw_if_any();
     return deck;

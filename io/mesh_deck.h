@@ -36,6 +36,16 @@ struct CycleThrough {
     std::vector<std::string> corners;
 };
 
+/// A family of solids that are meshed alike (see family_members).
+struct FamilySection {
+    /// A table of members, or empty: a design of the part's parameters.
+    std::filesystem::path parameters;
+    /// Of the design star: 1 both ends of each parameter's range, 2 also half way to them.
+    int level = 1;
+    /// Name of the member whose layout is chosen and repeated; empty: the deck's own geometry.
+    std::string reference;
+};
+
 /// One job of meshing: a surface file or a part, and what is done with it.
 struct MeshDeck {
     /// Empty: none was read.
@@ -69,6 +79,8 @@ struct MeshDeck {
     std::filesystem::path templates;
     /// Decisions of another member of the family, to be repeated; empty: none.
     std::filesystem::path like;
+    /// Nothing: one solid.
+    std::optional<FamilySection> family;
 };
 
 /// Whether a deck describes a surface to be meshed: it has a section [meshing], or 'surface' in

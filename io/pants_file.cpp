@@ -18,8 +18,11 @@ using nlohmann::ordered_json;
 using namespace meshing;
 
 constexpr const char* format_name = "couture pants 2";
+constexpr const char* layout_format_name = "couture layout 1";
 constexpr const char* way_out =
-    "take the NAME_pants.json that 'couture mesh' wrote, or write it again by meshing that member";
+    "take the NAME_pants.json or NAME_layout.json that 'couture mesh' wrote, or write it again by "
+    "meshing that member";
+constexpr int largest_number = 1'000'000;
 
 ordered_json to_json(const Vector3& x) { return {x.x(), x.y(), x.z()}; }
 
@@ -73,6 +76,16 @@ class Node {
             throw InputError("{} = {}; it must be below {}", path_, number, n);
         }
         return static_cast<int>(number);
+    }
+    // -1, or below n.
+    [[nodiscard]] int count_or_none(int n) const {
+        const bool is_none = value_.is_number_integer() && value_.get<std::int64_t>() == -1;
+        return is_none ? -1 : count_below(n);
+    }
+    [[nodiscard]] std::vector<int> counts_below(int n) const {
+        std::vector<int> numbers;
+        for (const Node& item : items()) numbers.push_back(item.count_below(n));
+        return numbers;
     }
     [[nodiscard]] Vector3 vector() const {
         const auto numbers = items();
@@ -138,16 +151,11 @@ GuideLoop read_shape(const Node& node) {
     return shape;
 }
 
-PantsRecord from_json(const json& object) {
-    const Node top(object, "");
-    if (const std::string format = top["format"].text(); format != format_name) {
-        throw InputError("format is '{}', expected '{}'", format, format_name);
-    }
-    constexpr int largest_genus = 1'000'000;
+PantsRecord read_pants(const Node& top) {
     PantsRecord record;
     read_box(top["box"], record);
     for (const Node& shell : top["shells"].items()) {
-        record.shells.push_back({.genus = shell["genus"].count_below(largest_genus),
+        record.shells.push_back({.genus = shell["genus"].count_below(largest_number),
                                  .center = shell["center"].vector()});
     }
     for (const auto& [name, x] : top["corners"].entries()) {
@@ -174,11 +182,154 @@ PantsRecord from_json(const json& object) {
     return record;
 }
 
-}  // namespace
+const char* kind_name(ArcKind kind) {
+    switch (kind) {
+        case ArcKind::convex:
+            return "convex";
+        case ArcKind::flat:
+            return "flat";
+        default:
+            return "reflex";
+    }
+}
 
-void write_pants_record(const std::filesystem::path& path, const PantsRecord& record,
-                        const std::string& provenance) {
-    ordered_json object = {{"format", format_name},
+ArcKind read_arc_kind(const Node& node) {
+    for (const auto kind : {ArcKind::convex, ArcKind::flat, ArcKind::reflex}) {
+        if (node.text() == kind_name(kind)) return kind;
+    }
+    throw InputError("{}: '{}' is no kind of sharp edge; there are convex, flat, reflex",
+                     node.path(), node.text());
+}
+
+// The nodes of the template are checked against it when the record is repeated.
+PatchSketch read_sketch(const Node& node) {
+    PatchSketch sketch;
+    const auto nodes = node["nodes"].items();
+    const auto curves = node["curves"].items();
+    const auto loops = node["loops"].items();
+    const auto n_nodes = static_cast<int>(nodes.size());
+    for (const Node& loop : loops) sketch.loops.push_back(loop.counts_below(n_nodes));
+    for (const Node& entry : nodes) {
+        sketch.nodes.push_back(
+            {.name = entry["name"].text(),
+             .loop = entry["loop"].count_or_none(static_cast<int>(loops.size())),
+             .curve_ends = entry["ends"].counts_below(2 * static_cast<int>(curves.size())),
+             .place = entry["place"].vector()});
+    }
+    for (const Node& entry : curves) {
+        sketch.curves.push_back({.name = entry["name"].text(),
+                                 .from = entry["from"].count_below(n_nodes),
+                                 .to = entry["to"].count_below(n_nodes),
+                                 .kind = read_arc_kind(entry["kind"]),
+                                 .middle = entry["middle"].vector()});
+    }
+    return sketch;
+}
+
+TemplateMatch read_match(const Node& node, const PatchSketch& features) {
+    TemplateMatch match;
+    match.caps = node["caps"].counts_below(largest_number);
+    for (const Node& loop : node["loop_nodes"].items()) {
+        match.loop_nodes.push_back(loop.counts_below(largest_number));
+    }
+    match.nodes = node["node_of_node"].counts_below(largest_number);
+    for (const Node& curve : node["nodes_of_curve"].items()) {
+        match.curves.push_back(curve.counts_below(largest_number));
+    }
+    if (match.caps.size() != features.loops.size() ||
+        match.loop_nodes.size() != features.loops.size() ||
+        match.nodes.size() != features.nodes.size() ||
+        match.curves.size() != features.curves.size()) {
+        throw InputError(
+            "{}: nodes of {} loops, {} corners and {} curves, but features has {}, {} and {}",
+            node.path(), match.loop_nodes.size(), match.nodes.size(), match.curves.size(),
+            features.loops.size(), features.nodes.size(), features.curves.size());
+    }
+    return match;
+}
+
+LayoutRecord read_layout(const Node& node) {
+    LayoutRecord record;
+    for (const Node& patch : node["patches"].items()) {
+        PatchSketch features = read_sketch(patch["features"]);
+        TemplateMatch match = read_match(patch, features);
+        record.patches.push_back({patch["template"].text(), std::move(match), std::move(features)});
+    }
+    for (const Node& cut : node["rotations"].items()) {
+        record.rotations[cut["cut"].count_below(largest_number)] =
+            cut["rotation"].count_below(largest_number);
+    }
+    record.elements = node["elements"].counts_below(largest_number);
+    for (const auto& [name, sides] : node["sets"].entries()) {
+        auto& set = record.sets[name];
+        for (const Node& side : sides.items()) {
+            set.push_back(
+                {side["cuboid"].count_below(largest_number), side["side"].count_below(6)});
+        }
+    }
+    return record;
+}
+
+MemberRecord from_json(const json& object) {
+    const Node top(object, "");
+    const std::string format = top["format"].text();
+    if (format != format_name && format != layout_format_name) {
+        throw InputError("format is '{}', expected '{}' or '{}'", format, format_name,
+                         layout_format_name);
+    }
+    MemberRecord record{read_pants(top), {}};
+    if (format == layout_format_name) record.layout = read_layout(top["layout"]);
+    return record;
+}
+
+ordered_json to_json(const PatchSketch& sketch) {
+    auto nodes = ordered_json::array();
+    for (const auto& node : sketch.nodes) {
+        nodes.push_back({{"name", node.name},
+                         {"loop", node.loop},
+                         {"ends", node.curve_ends},
+                         {"place", to_json(node.place)}});
+    }
+    auto curves = ordered_json::array();
+    for (const auto& curve : sketch.curves) {
+        curves.push_back({{"name", curve.name},
+                          {"from", curve.from},
+                          {"to", curve.to},
+                          {"kind", kind_name(curve.kind)},
+                          {"middle", to_json(curve.middle)}});
+    }
+    return {{"nodes", std::move(nodes)}, {"curves", std::move(curves)}, {"loops", sketch.loops}};
+}
+
+ordered_json to_json(const LayoutRecord& record) {
+    auto patches = ordered_json::array();
+    for (const auto& patch : record.patches) {
+        patches.push_back({{"template", patch.shape},
+                           {"caps", patch.match.caps},
+                           {"loop_nodes", patch.match.loop_nodes},
+                           {"node_of_node", patch.match.nodes},
+                           {"nodes_of_curve", patch.match.curves},
+                           {"features", to_json(patch.features)}});
+    }
+    auto rotations = ordered_json::array();
+    for (const auto& [cut, rotation] : record.rotations) {
+        rotations.push_back({{"cut", cut}, {"rotation", rotation}});
+    }
+    auto sets = ordered_json::object();
+    for (const auto& [name, sides] : record.sets) {
+        auto& set = sets[name] = ordered_json::array();
+        for (const CuboidSide& side : sides) {
+            set.push_back({{"cuboid", side.cuboid}, {"side", side.side}});
+        }
+    }
+    return {{"patches", std::move(patches)},
+            {"rotations", std::move(rotations)},
+            {"elements", record.elements},
+            {"sets", std::move(sets)}};
+}
+
+ordered_json to_json(const PantsRecord& record, const char* format, const std::string& provenance) {
+    ordered_json object = {{"format", format},
                            {"provenance", provenance},
                            {"box", {to_json(record.box_min), to_json(record.box_max)}}};
     auto& shells = object["shells"] = ordered_json::array();
@@ -207,10 +358,24 @@ void write_pants_record(const std::filesystem::path& path, const PantsRecord& re
         }
         patches.push_back({{"shell", record.shell_of_patch[p]}, {"boundary", std::move(sides)}});
     }
+    return object;
+}
+
+}  // namespace
+
+void write_pants_record(const std::filesystem::path& path, const PantsRecord& record,
+                        const std::string& provenance) {
+    write_text(path, to_json(record, format_name, provenance).dump(1) + "\n");
+}
+
+void write_layout_record(const std::filesystem::path& path, const PantsRecord& pants,
+                         const LayoutRecord& layout, const std::string& provenance) {
+    ordered_json object = to_json(pants, layout_format_name, provenance);
+    object["layout"] = to_json(layout);
     write_text(path, object.dump(1) + "\n");
 }
 
-PantsRecord read_pants_record(const std::filesystem::path& path) {
+MemberRecord read_member_record(const std::filesystem::path& path) {
     try {
         return from_json(json::parse(read_text(path)));
     } catch (const json::parse_error& error) {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "meshing/topology/pants_record.h"
+#include "meshing/layout/layout_record.h"
 
 namespace couture::io {
 
@@ -12,8 +12,16 @@ namespace couture::io {
 void write_pants_record(const std::filesystem::path& path, const meshing::PantsRecord& record,
                         const std::string& provenance);
 
+/// The same with the decisions of a layout.
+///
+/// @throws FileError  if it can't be written
+void write_layout_record(const std::filesystem::path& path, const meshing::PantsRecord& pants,
+                         const meshing::LayoutRecord& layout, const std::string& provenance);
+
+/// Either of the two.
+///
 /// @throws FileError  if it can't be read, is no such file or holds what makes no decomposition:
 ///                    says where
-[[nodiscard]] meshing::PantsRecord read_pants_record(const std::filesystem::path& path);
+[[nodiscard]] meshing::MemberRecord read_member_record(const std::filesystem::path& path);
 
 }  // namespace couture::io

@@ -8,6 +8,7 @@
 
 #include "drivers/commands/commands.h"
 #include "drivers/hash.h"
+#include "drivers/mesh_family.h"
 #include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
 #include "drivers/surface_input.h"
@@ -313,6 +314,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
                          options.surface);
     }
     const io::MeshDeck deck = deck_of(options);
+    if (deck.family) return mesh_family(deck, options, common);
     const MeshStage last = read_mesh_stage(deck.stage);
 
     const std::string name = std::filesystem::path(options.surface).stem().string();

@@ -2,42 +2,34 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <set>
 
 #include "iga/core/error.h"
 #include "meshing/layout/embed_layout.h"
 #include "meshing/layout/glue.h"
+#include "meshing/layout/layout_choice.h"
 #include "meshing/layout/padding.h"
 #include "meshing/layout/patch_features.h"
-#include "meshing/layout/template_choice.h"
 
 namespace couture::meshing {
 
 namespace {
 
-// Room between the numbers of two vertices of a cut for the nodes that lie between them.
-constexpr int place_step = 1024;
-
-// A template laid on a patch.
-struct Candidate {
-    const CuboidTemplate* shape = nullptr;
-    TemplateMatch match;
-};
-
-class Decomposer {
+// Draws a layout that was chosen.
+class Drawing {
   public:
-    Decomposer(const SurfaceMesh& opened, const Features& features, const PantsDecomposition& pants,
-               const ClosingCaps& caps, const TemplateLibrary& library, const MatchOptions& options)
+    Drawing(const SurfaceMesh& opened, const std::vector<PatchFeatures>& patches,
+            const PantsDecomposition& pants, const ClosingCaps& caps,
+            const TemplateLibrary& library, const LayoutChoice& choice)
         : opened_(opened),
+          patches_(patches),
           pants_(pants),
           caps_(caps),
           library_(library),
-          options_(options),
-          patches_(find_patch_features(opened, features, pants)),
-          n_patches_(static_cast<int>(patches_.size())) {}
+          choice_(choice),
+          n_patches_(static_cast<int>(patches.size())) {}
 
     CuboidDecomposition run() {
-        choose();
         glue();
         CuboidDecomposition result;
         result.mesh = close_caps(opened_, caps_);
@@ -46,9 +38,7 @@ class Decomposer {
         LayoutBoundary boundary = layout_boundary(result.volume);
         result.sides = std::move(boundary.sides);
         result.surface = embed_layout(result.mesh, boundary.layout, ties);
-        for (const Candidate& candidate : chosen_) {
-            result.templates.push_back(candidate.shape->name);
-        }
+        result.templates = choice_.templates;
         return result;
     }
 
@@ -57,116 +47,21 @@ class Decomposer {
         return pants_.curves[curve].kind != PantsCurveKind::boundary;
     }
 
-    void choose() {
-        std::vector<std::vector<Candidate>> candidates(n_patches_);
-        std::vector<std::vector<TemplateCandidate>> offers(n_patches_);
-        for (int p = 0; p < n_patches_; ++p) {
-            const PatchFeatures& patch = patches_[p];
-            for (const CuboidTemplate& shape :
-                 library_.with_caps(static_cast<int>(patch.loops.size()))) {
-                for (TemplateMatch& match : match_template(opened_, patch, shape, options_)) {
-                    if (!has_room(patch, match)) continue;
-                    candidates[p].push_back({&shape, std::move(match)});
-                    offers[p].push_back(make_offer(patch, candidates[p].back()));
-                }
-            }
-            if (candidates[p].empty()) throw_nothing_fits(p);
-        }
-        const TemplateChoice choice = choose_templates(offers);
-        for (int p = 0; p < n_patches_; ++p) {
-            chosen_.push_back(std::move(candidates[p][choice.candidates[p]]));
-        }
-        rotations_ = choice.rotations;
-    }
-
-    [[noreturn]] void throw_nothing_fits(int p) const {
-        const PatchFeatures& patch = patches_[p];
-        std::string names;
-        for (const auto& shape : library_.with_caps(static_cast<int>(patch.loops.size()))) {
-            names += (names.empty() ? "" : ", ") + shape.name;
-        }
-        const auto n_corners =
-            std::ranges::count_if(patch.nodes, [](const auto& node) { return node.loop < 0; });
-        throw TopologyError(
-            "layout: no template fits patch {} with {} boundary loops, {} sharp edges and {} "
-            "corners inside. Templates with so many caps: {}. Let cuts cross sharp edges, not run "
-            "along them (another criterion, loops), or add a template",
-            p, patch.loops.size(), patch.curves.size(), n_corners, names.empty() ? "none" : names);
-    }
-
-    // Whether all loops have vertices for their nodes.
-    [[nodiscard]] static bool has_room(const PatchFeatures& patch, const TemplateMatch& match) {
-        for (std::size_t l = 0; l < patch.loops.size(); ++l) {
-            if (patch.loops[l].vertices.size() < match.loop_nodes[l].size()) return false;
-        }
-        return true;
-    }
-
-    [[nodiscard]] TemplateCandidate make_offer(const PatchFeatures& patch,
-                                               const Candidate& candidate) const {
-        TemplateCandidate offer;
-        offer.cost = candidate.match.cost;
-        for (std::size_t l = 0; l < patch.loops.size(); ++l) {
-            const int curve = patch.loops[l].side.curve;
-            if (!is_cut(curve)) continue;
-            CutDemand demand{curve, cap_pattern(*candidate.shape, candidate.match.caps[l]), {}};
-            const std::map<int, int> places = places_on(patch, candidate.match, l);
-            for (const int node : demand.pattern.loop) demand.places.push_back(places.at(node));
-            offer.cuts.push_back(std::move(demand));
-        }
-        return offer;
-    }
-
-    // For each node of a template on a loop where it lies on the cut, in the cut's direction: at a
-    // vertex, or the so many-th between two.
-    [[nodiscard]] std::map<int, int> places_on(const PatchFeatures& patch,
-                                               const TemplateMatch& match, std::size_t l) const {
-        const PatchFeatures::Loop& loop = patch.loops[l];
-        const std::vector<int>& nodes = match.loop_nodes[l];
-        const auto n = static_cast<int>(nodes.size());
-        std::map<int, int> places;
-        if (loop.nodes.empty()) {
-            for (int k = 0; k < n; ++k) {
-                places[nodes[k]] = (loop.side.is_left ? k : (n - k) % n) * place_step;
-            }
-            return places;
-        }
-        const auto& vertices = pants_.curves[loop.side.curve].curve.vertices;
-        std::map<int, int> position;
-        for (std::size_t k = 0; k < vertices.size(); ++k) {
-            position[vertices[k].idx()] = static_cast<int>(k);
-        }
-        std::map<int, int> fixed;
-        for (const int node : loop.nodes) {
-            fixed[match.nodes[node]] = position.at(patch.nodes[node].vertex.idx()) * place_step;
-        }
-        // Along the cut's direction from a fixed node on.
-        std::vector<int> along = nodes;
-        if (!loop.side.is_left) std::reverse(along.begin() + 1, along.end());
-        int place = 0;
-        for (const int node : along) {
-            const auto known = fixed.find(node);
-            place = known != fixed.end() ? known->second : place + 1;
-            places[node] = place;
-        }
-        return places;
-    }
-
     void glue() {
         std::vector<CuboidTemplate> shapes;
-        for (const Candidate& candidate : chosen_) shapes.push_back(*candidate.shape);
+        for (const std::string& name : choice_.templates) shapes.push_back(library_.find(name));
         std::map<int, std::vector<PatchCap>> caps_of_curve;
         for (int p = 0; p < n_patches_; ++p) {
             for (std::size_t l = 0; l < patches_[p].loops.size(); ++l) {
                 caps_of_curve[patches_[p].loops[l].side.curve].push_back(
-                    {p, chosen_[p].match.caps[l]});
+                    {p, choice_.matches[p].caps[l]});
             }
         }
         std::vector<CapJoint> joints;
         std::map<std::string, std::vector<CuboidSide>> sets;
         for (const auto& [curve, caps] : caps_of_curve) {
             if (is_cut(curve)) {
-                joints.push_back({caps.at(0), caps.at(1), rotations_.at(curve)});
+                joints.push_back({caps.at(0), caps.at(1), choice_.rotations.at(curve)});
             }
         }
         glued_ = glue_templates(shapes, joints);
@@ -196,7 +91,7 @@ class Decomposer {
             const PatchFeatures& patch = patches_[p];
             for (std::size_t c = 0; c < patch.curves.size(); ++c) {
                 ties.push_back({patch.curves[c].vertices,
-                                glued_nodes(p, chosen_[p].match.curves[c]), true,
+                                glued_nodes(p, choice_.matches[p].curves[c]), true,
                                 patch.curves[c].kind == ArcKind::reflex,
                                 fmt::format("sharp edge {} of patch {}", c, p)});
             }
@@ -213,7 +108,7 @@ class Decomposer {
     // The parts of a loop between feature nodes, or between evenly spread nodes.
     void tie_loop(int p, std::size_t l, std::vector<LayoutTie>& ties) const {
         const PatchFeatures::Loop& loop = patches_[p].loops[l];
-        const std::vector<int> nodes = glued_nodes(p, chosen_[p].match.loop_nodes[l]);
+        const std::vector<int> nodes = glued_nodes(p, choice_.matches[p].loop_nodes[l]);
         const auto n = static_cast<int>(nodes.size());
         const auto n_vertices = static_cast<int>(loop.vertices.size());
         // Positions of fixed nodes: on the loop, and among its nodes.
@@ -225,7 +120,7 @@ class Decomposer {
         for (const int node : loop.nodes) {
             const auto vertex = std::ranges::find(loop.vertices, patches_[p].nodes[node].vertex);
             const auto here =
-                std::ranges::find(nodes, glued_.nodes[p][chosen_[p].match.nodes[node]]);
+                std::ranges::find(nodes, glued_.nodes[p][choice_.matches[p].nodes[node]]);
             fixed.emplace_back(vertex - loop.vertices.begin(), here - nodes.begin());
         }
         const int curve = loop.side.curve;
@@ -293,16 +188,64 @@ class Decomposer {
     }
 
     const SurfaceMesh& opened_;
+    const std::vector<PatchFeatures>& patches_;
     const PantsDecomposition& pants_;
     const ClosingCaps& caps_;
     const TemplateLibrary& library_;
-    const MatchOptions& options_;
-    std::vector<PatchFeatures> patches_;
+    const LayoutChoice& choice_;
     int n_patches_;
-    std::vector<Candidate> chosen_;
-    std::map<int, int> rotations_;
     GluedLayout glued_;
 };
+
+// Whether a recorded choice names nodes and arcs that its templates have, and all cuts.
+void check_choice(const LayoutChoice& choice, const PantsDecomposition& pants,
+                  const TemplateLibrary& library) {
+    for (std::size_t p = 0; p < choice.matches.size(); ++p) {
+        const CuboidTemplate& shape = library.find(choice.templates[p]);
+        const TemplateMatch& match = choice.matches[p];
+        const QuadLayout wall = wall_of(shape).layout;
+        const auto is_node = [&](int n) { return n < shape.layout.n_nodes; };
+        bool is_right = std::ranges::all_of(match.nodes, is_node) &&
+                        std::ranges::all_of(match.caps, [&](int c) { return c < shape.n_caps(); });
+        for (const auto& loop : match.loop_nodes) {
+            is_right = is_right && std::ranges::all_of(loop, is_node);
+        }
+        for (const auto& curve : match.curves) {
+            is_right = is_right && curve.size() >= 2 && std::ranges::all_of(curve, is_node);
+            for (std::size_t k = 0; is_right && k + 1 < curve.size(); ++k) {
+                is_right = wall.find_arc(curve[k], curve[k + 1]) >= 0;
+            }
+        }
+        if (is_right) continue;
+        throw TopologyError(
+            "layout: patch {} has nodes, arcs or caps in the record that its template '{}' lacks; "
+            "the record was made with another template of that name",
+            p, shape.name);
+    }
+    for (std::size_t c = 0; c < pants.curves.size(); ++c) {
+        if (pants.curves[c].kind == PantsCurveKind::boundary ||
+            choice.rotations.contains(static_cast<int>(c))) {
+            continue;
+        }
+        throw TopologyError("layout: cut {} has no rotation in the record", c);
+    }
+}
+
+// The sets of the recorded layout, if all are outer sides here.
+void repeat_sets(const LayoutRecord& record, const std::vector<CuboidSide>& outer_sides,
+                 VolumetricLayout& volume) {
+    const std::set<CuboidSide> outer(outer_sides.begin(), outer_sides.end());
+    for (const auto& [name, sides] : record.sets) {
+        for (const CuboidSide& side : sides) {
+            if (outer.contains(side)) continue;
+            throw TopologyError(
+                "layout: side {} of cuboid {} is in the recorded set '{}', but no outer side; the "
+                "record was made with other templates, or from a surface with other sharp edges",
+                side.side, side.cuboid, name);
+        }
+    }
+    volume.sets = record.sets;
+}
 
 }  // namespace
 
@@ -310,7 +253,26 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
                                            const PantsDecomposition& pants, const ClosingCaps& caps,
                                            const TemplateLibrary& library,
                                            const MatchOptions& options) {
-    return Decomposer(opened, features, pants, caps, library, options).run();
+    const std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
+    const LayoutChoice choice = choose_layout(opened, patches, pants, library, options);
+    CuboidDecomposition result = Drawing(opened, patches, pants, caps, library, choice).run();
+    result.record = record_layout(opened, patches, choice);
+    result.record.sets = result.volume.sets;
+    return result;
+}
+
+CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& features,
+                                   const PantsDecomposition& pants, const ClosingCaps& caps,
+                                   const TemplateLibrary& library, const LayoutRecord& record) {
+    std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
+    const LayoutChoice choice = repeat_choice(opened, record, patches);
+    check_choice(choice, pants, library);
+    CuboidDecomposition result = Drawing(opened, patches, pants, caps, library, choice).run();
+    repeat_sets(record, result.sides, result.volume);
+    result.record = record_layout(opened, patches, choice);
+    result.record.elements = record.elements;
+    result.record.sets = record.sets;
+    return result;
 }
 
 }  // namespace couture::meshing

@@ -5,6 +5,7 @@
 
 #include "meshing/layout/cuboid_template.h"
 #include "meshing/layout/embedded_layout.h"
+#include "meshing/layout/layout_record.h"
 #include "meshing/layout/template_match.h"
 #include "meshing/surface/caps.h"
 #include "meshing/surface/features.h"
@@ -25,6 +26,8 @@ struct CuboidDecomposition {
     std::vector<CuboidSide> sides;
     /// For each patch of the decomposition the name of its template.
     std::vector<std::string> templates;
+    /// What was decided, for other members of the family; without elements.
+    LayoutRecord record;
 };
 
 /// Chooses a template for each patch, glues the templates along the cuts and draws their boundary
@@ -40,5 +43,19 @@ struct CuboidDecomposition {
 [[nodiscard]] CuboidDecomposition decompose_into_cuboids(
     const SurfaceMesh& opened, const Features& features, const PantsDecomposition& pants,
     const ClosingCaps& caps, const TemplateLibrary& library, const MatchOptions& options = {});
+
+/// The same for another member of a family, with what was decided on the first one: its templates,
+/// laid on corresponding features, its sets.
+///
+/// @param pants   cut as the first member was (replay_pants)
+/// @param record  carried over to this member (carry_over)
+/// @throws TopologyError  if features don't match those of the first member (see repeat_choice), if
+///                        a recorded set is not on the boundary, or as embed_layout
+/// @throws InputError     if the library lacks a recorded template
+///
+/// Source: [Maquart19] Sec. 5.1, 6.3.4.
+[[nodiscard]] CuboidDecomposition repeat_cuboids(
+    const SurfaceMesh& opened, const Features& features, const PantsDecomposition& pants,
+    const ClosingCaps& caps, const TemplateLibrary& library, const LayoutRecord& record);
 
 }  // namespace couture::meshing

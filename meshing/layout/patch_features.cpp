@@ -17,7 +17,7 @@ HalfedgeHandle rotated(const SurfaceMesh& mesh, HalfedgeHandle h) {
 class Collector {
   public:
     Collector(const SurfaceMesh& mesh, const Features& features, const PantsDecomposition& pants)
-        : mesh_(mesh), pants_(pants), patches_(pants.patches.size()) {
+        : mesh_(mesh), features_(features), pants_(pants), patches_(pants.patches.size()) {
         for (const VertexHandle corner : features.corners) corners_.insert(corner.idx());
     }
 
@@ -94,6 +94,8 @@ class Collector {
         const int patch = pants_.patch_of_face[mesh_.face_handle(first).idx()];
         const int node = static_cast<int>(patches_[patch].nodes.size());
         patches_[patch].nodes.push_back({v, -1, {}});
+        const auto name = features_.corner_names.find(v.idx());
+        if (name != features_.corner_names.end()) patches_[patch].nodes.back().name = name->second;
         for (const HalfedgeHandle spoke : spokes) add_end(patch, node, spoke);
     }
 
@@ -102,6 +104,7 @@ class Collector {
         if (features.nodes[start.node].curve_ends[start.position] >= 0) return;
         const int number = static_cast<int>(features.curves.size());
         PatchFeatures::Curve curve{start.node, -1, ArcKind::convex, {mesh_.from_vertex_handle(h)}};
+        curve.name = features_.curves[mesh_.data(mesh_.edge_handle(h)).feature].name;
         double bend = 0.0;
         for (;;) {
             is_traced_.insert(mesh_.edge_handle(h).idx());
@@ -145,6 +148,7 @@ class Collector {
     }
 
     const SurfaceMesh& mesh_;
+    const Features& features_;
     const PantsDecomposition& pants_;
     std::vector<PatchFeatures> patches_;
     std::set<int> corners_;

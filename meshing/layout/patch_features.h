@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "meshing/layout/cuboid_template.h"
@@ -17,6 +18,8 @@ struct PatchFeatures {
         /// Feature curves inside that end here, counter-clockwise; on a boundary from the first one
         /// beside the loop's way on. Twice the number of the curve, plus 1 at its end.
         std::vector<int> curve_ends;
+        /// Of a corner of a part, see Features::corner_names; else empty.
+        std::string name = {};
     };
     struct Curve {
         int from = -1;
@@ -25,6 +28,8 @@ struct PatchFeatures {
         ArcKind kind = ArcKind::convex;
         /// From node to node, both included.
         std::vector<VertexHandle> vertices;
+        /// See FeatureCurve::name.
+        std::string name = {};
     };
     struct Loop {
         CurveSide side;

@@ -65,6 +65,18 @@ std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& c
     return of_arcs;
 }
 
+// Decides on elements and on names of outer sides.
+void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
+                     const SolidMeshOptions& options) {
+    cuboids.record.elements = elements_by_size(cuboids, cells, options);
+    if (!options.faces) return;
+    for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
+        std::vector<CuboidSide>& set = cuboids.volume.sets[name];
+        set.insert(set.end(), sides.begin(), sides.end());
+    }
+    cuboids.record.sets = cuboids.volume.sets;
+}
+
 }  // namespace
 
 SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
@@ -76,15 +88,20 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     };
     SolidMesh solid;
     say("choosing and drawing cuboids");
-    solid.cuboids = decompose_into_cuboids(opened, features, pants, caps, library, options.match);
+    solid.cuboids =
+        options.like
+            ? repeat_cuboids(opened, features, pants, caps, library, *options.like)
+            : decompose_into_cuboids(opened, features, pants, caps, library, options.match);
     SurfaceMesh& mesh = solid.cuboids.mesh;
     EmbeddedLayout& surface = solid.cuboids.surface;
     const LayoutCells cells = make_layout_cells(solid.cuboids.volume);
-    solid.elements = options.elements.empty() ? elements_by_size(solid.cuboids, cells, options)
-                                              : options.elements;
-    if (static_cast<int>(solid.elements.size()) != cells.n_sheets()) {
-        throw InputError("mesh: numbers of elements for {} sheets of cuboids, but there are {}",
-                         solid.elements.size(), cells.n_sheets());
+    if (!options.like) complete_record(solid.cuboids, cells, options);
+    const std::vector<int>& elements = solid.cuboids.record.elements;
+    if (static_cast<int>(elements.size()) != cells.n_sheets()) {
+        throw TopologyError(
+            "mesh: numbers of elements for {} sheets of cuboids were recorded, but there are {}; "
+            "the record was made with other templates",
+            elements.size(), cells.n_sheets());
     }
     if (options.last == SolidStage::layout) return solid;
 
@@ -94,8 +111,8 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     map_options.is_optimised = options.is_aligned;
     // Nodes move on from here.
     map_options.tolerance = 1e-4;
-    solid.map = make_layout_map(
-        mesh, surface, cells_of_surface(surface.layout, cells, solid.elements), map_options);
+    solid.map = make_layout_map(mesh, surface, cells_of_surface(surface.layout, cells, elements),
+                                map_options);
     if (options.last == SolidStage::map) return solid;
 
     say("moving nodes");
@@ -116,7 +133,7 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
 
     say("fitting splines and filling the volume");
     LayoutVolumeOptions volume = options.volume;
-    volume.n_elements = solid.elements;
+    volume.n_elements = elements;
     solid.volume = make_layout_volume(
         solid.cuboids.volume,
         refine_samples(mesh, surface, *solid.quads, options.samples_per_element), volume);

@@ -11,6 +11,7 @@
 #include "meshing/parameterization/layout_map.h"
 #include "meshing/parameterization/node_relocation.h"
 #include "meshing/parameterization/sample_quality.h"
+#include "meshing/pipeline/outer_side_names.h"
 #include "meshing/pipeline/volume_distance.h"
 #include "meshing/volume/layout_volume.h"
 
@@ -27,9 +28,12 @@ struct SolidMeshOptions {
     double element_size = 0.0;
     /// Elements of each sheet of cuboids, at least.
     int min_elements = 2;
-    /// Elements of each sheet of cuboids, in the order of LayoutCells::sheets, as another member of
-    /// the family has them; empty: by their size.
-    std::vector<int> elements = {};
+    /// What was decided on another member of the family, carried over to this one (carry_over):
+    /// repeated instead of templates, elements and names chosen here.
+    std::optional<LayoutRecord> like = {};
+    /// The closed surface with the names of its faces: outer sides of cuboids become sets by them.
+    /// Nothing: only caps are sets.
+    std::optional<NamedFaces> faces = {};
     /// Whether the map is optimised over the whole surface; else quads are mapped each on its own.
     bool is_aligned = true;
     /// Points of the surface for each element and direction that splines are fitted to; at least 2.
@@ -42,9 +46,8 @@ struct SolidMeshOptions {
 
 /// What the stages made of a solid; those behind the last one are empty.
 struct SolidMesh {
+    /// With the elements of its sheets in its record.
     CuboidDecomposition cuboids;
-    /// Elements of each sheet of cuboids, in the order of LayoutCells::sheets.
-    std::vector<int> elements;
     std::optional<LayoutMap> map;
     /// One cell for each spline element.
     std::optional<LayoutSamples> quads;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <numbers>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "iga/core/types.h"
@@ -30,6 +32,8 @@ struct FeatureCurve {
     /// Whether its edges lie on the boundary of the mesh.
     bool is_boundary = false;
     double length = 0.0;
+    /// Of a part: that of its curve; empty of others.
+    std::string name = {};
 };
 
 /// A smooth face: triangles that hang together without crossing a feature curve.
@@ -60,6 +64,8 @@ struct Features {
     /// Vertices where three or more curves meet, where one ends, or where one turns sharply;
     /// ascending.
     std::vector<VertexHandle> corners;
+    /// Of corners of a part, by the number of their vertex.
+    std::map<int, std::string> corner_names = {};
     /// In the order of their smallest face.
     std::vector<FeatureRegion> regions;
 };

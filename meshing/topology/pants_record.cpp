@@ -8,6 +8,7 @@
 
 #include "iga/core/error.h"
 #include "meshing/topology/invariants.h"
+#include "meshing/topology/member_warp.h"
 
 namespace couture::meshing {
 
@@ -30,16 +31,6 @@ std::vector<PantsRecord::Shell> measure_shells(const SurfaceMesh& mesh) {
     return shells;
 }
 
-void measure_box(const SurfaceMesh& mesh, Vector3& low, Vector3& high) {
-    low = Vector3::Constant(std::numeric_limits<double>::infinity());
-    high = -low;
-    for (const auto vertex : mesh.vertices()) {
-        if (mesh.is_isolated(vertex)) continue;
-        low = low.cwiseMin(mesh.point(vertex));
-        high = high.cwiseMax(mesh.point(vertex));
-    }
-}
-
 GuideLoop shape_of(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     GuideLoop samples;
     for (const VertexHandle vertex : curve.vertices) {
@@ -49,84 +40,9 @@ GuideLoop shape_of(const SurfaceMesh& mesh, const SurfaceCurve& curve) {
     return samples;
 }
 
-// Carries points of one member over to another.
-class Warp {
-  public:
-    Warp(const PantsRecord& from, const SurfaceMesh& mesh, const Landmarks& landmarks)
-        : low_(from.box_min) {
-        Vector3 high;
-        measure_box(mesh, to_low_, high);
-        for (int i = 0; i < 3; ++i) {
-            const double size = from.box_max[i] - from.box_min[i];
-            scale_[i] = size > 0.0 ? (high[i] - to_low_[i]) / size : 1.0;
-        }
-        for (const auto& [name, x] : from.landmarks.corners) {
-            if (const auto other = landmarks.corners.find(name); other != landmarks.corners.end()) {
-                add(x, other->second);
-            }
-        }
-        for (const auto& [name, points] : from.landmarks.curves) {
-            const auto other = landmarks.curves.find(name);
-            if (other == landmarks.curves.end() || other->second.size() != points.size()) continue;
-            add_curve(points, other->second, from.landmarks.closed_curves.contains(name));
-        }
-    }
-
-    // By the boxes, and the weighted mean of how much that misses the landmarks.
-    [[nodiscard]] Vector3 operator()(const Vector3& x) const {
-        Vector3 sum = Vector3::Zero();
-        double weights = 0.0;
-        for (const auto& [place, miss] : misses_) {
-            const double squared = (x - place).squaredNorm();
-            if (squared == 0.0) return by_box(x) + miss;
-            const double weight = 1.0 / (squared * squared);
-            sum += weight * miss;
-            weights += weight;
-        }
-        return weights > 0.0 ? Vector3(by_box(x) + sum / weights) : by_box(x);
-    }
-
-  private:
-    [[nodiscard]] Vector3 by_box(const Vector3& x) const {
-        return to_low_ + scale_.cwiseProduct(x - low_);
-    }
-    void add(const Vector3& from, const Vector3& to) {
-        misses_.emplace_back(from, to - by_box(from));
-    }
-    // A closed curve may start anywhere and run either way, an open one start at either end: as
-    // near as can be.
-    void add_curve(const std::vector<Vector3>& from, const std::vector<Vector3>& to,
-                   bool is_closed) {
-        const int n = static_cast<int>(from.size());
-        double least = std::numeric_limits<double>::infinity();
-        std::vector<int> best;
-        for (const int direction : {1, -1}) {
-            for (int shift = 0; shift < (is_closed ? n : 1); ++shift) {
-                const int start = direction > 0 ? shift : n - 1 - shift;
-                std::vector<int> partner(n);
-                double sum = 0.0;
-                for (int k = 0; k < n; ++k) {
-                    partner[k] = ((start + direction * k) % n + n) % n;
-                    sum += (to[partner[k]] - by_box(from[k])).squaredNorm();
-                }
-                if (sum < least * (1.0 - 1e-9)) {
-                    least = sum;
-                    best = partner;
-                }
-            }
-        }
-        for (int k = 0; k < n; ++k) add(from[k], to[best[k]]);
-    }
-
-    Vector3 low_;
-    Vector3 to_low_ = Vector3::Zero();
-    Vector3 scale_ = Vector3::Ones();
-    std::vector<std::pair<Vector3, Vector3>> misses_;
-};
-
 // For each boundary of the record the loop of the member: by name, else the nearest.
 std::vector<int> match_boundaries(const PantsRecord& record, const SurfaceMesh& mesh,
-                                  const std::vector<std::string>& names, const Warp& warp) {
+                                  const std::vector<std::string>& names, const MemberWarp& warp) {
     std::vector<const PantsRecord::Curve*> wanted;
     for (const auto& curve : record.curves) {
         if (curve.kind == PantsCurveKind::boundary) wanted.push_back(&curve);
@@ -182,7 +98,7 @@ std::string genera(const std::vector<PantsRecord::Shell>& shells) {
 
 // For each shell of the member that of the record with the same genus that is nearest.
 std::vector<int> match_shells(const PantsRecord& record, const SurfaceMesh& mesh,
-                              const Warp& warp) {
+                              const MemberWarp& warp) {
     const auto shells = measure_shells(mesh);
     std::vector<int> partner(shells.size(), -1);
     for (std::size_t r = 0; r < record.shells.size(); ++r) {
@@ -236,12 +152,65 @@ void order_patches(PantsDecomposition& pants, const PantsRecord& record,
     for (int& patch : pants.patch_of_face) patch = number[patch];
 }
 
+// Places along a closed polygon.
+class ClosedPolygon {
+  public:
+    explicit ClosedPolygon(std::vector<Vector3> points) : points_(std::move(points)) {
+        for (std::size_t k = 0; k < points_.size(); ++k) {
+            gone_.push_back(gone_.back() + (points_[(k + 1) % points_.size()] - points_[k]).norm());
+        }
+    }
+    [[nodiscard]] double length() const { return gone_.back(); }
+    [[nodiscard]] double length_up_to(std::size_t point) const { return gone_[point]; }
+    // @param way  from the first point on, in [0, 2 length)
+    [[nodiscard]] Vector3 at(double way) const {
+        if (way >= length()) way -= length();
+        const auto after = std::ranges::upper_bound(gone_, way) - gone_.begin();
+        const auto k = std::min<std::size_t>(after - 1, points_.size() - 1);
+        const double step = gone_[k + 1] - gone_[k];
+        const double t = step > 0.0 ? (way - gone_[k]) / step : 0.0;
+        return (1.0 - t) * points_[k] + t * points_[(k + 1) % points_.size()];
+    }
+
+  private:
+    std::vector<Vector3> points_;
+    std::vector<double> gone_{0.0};
+};
+
+// Lets a closed curve start where it runs nearest to one of the same direction.
+void align_start(const SurfaceMesh& mesh, std::vector<VertexHandle>& vertices,
+                 const std::vector<Vector3>& like) {
+    constexpr int n_places = 16;
+    std::vector<Vector3> points;
+    for (const VertexHandle v : vertices) points.push_back(mesh.point(v));
+    const ClosedPolygon curve(std::move(points));
+    const ClosedPolygon wanted(like);
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t start = 0;
+    for (std::size_t s = 0; s < vertices.size(); ++s) {
+        double sum = 0.0;
+        for (int k = 0; k < n_places; ++k) {
+            const double part = static_cast<double>(k) / n_places;
+            sum += (curve.at(curve.length_up_to(s) + part * curve.length()) -
+                    wanted.at(part * wanted.length()))
+                       .squaredNorm();
+        }
+        if (sum >= least) continue;
+        least = sum;
+        start = s;
+    }
+    std::rotate(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(start),
+                vertices.end());
+}
+
 }  // namespace
 
 PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
                          const Landmarks& landmarks) {
     PantsRecord record;
-    measure_box(mesh, record.box_min, record.box_max);
+    const auto [low, high] = surface_box(mesh);
+    record.box_min = low;
+    record.box_max = high;
     record.landmarks = landmarks;
     record.shells = measure_shells(mesh);
     for (const PantsCurve& curve : pants.curves) {
@@ -258,7 +227,7 @@ PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pant
 PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
                                 const std::vector<std::string>& boundary_names,
                                 const Landmarks& landmarks, double width) {
-    const Warp warp(record, mesh, landmarks);
+    const MemberWarp warp(record, mesh, landmarks);
     const std::vector<int> shell_of_record = match_shells(record, mesh, warp);
     PantsOptions options;
     options.loop_width = width;
@@ -275,6 +244,11 @@ PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
         if (pants.curves[c].kind == record.curves[c].kind) continue;
         throw TopologyError("replay: curve {} is a {} here and was a {} on the recorded member", c,
                             to_string(pants.curves[c].kind), to_string(record.curves[c].kind));
+    }
+    for (std::size_t c = 0; c < record.curves.size(); ++c) {
+        std::vector<Vector3> like = record.curves[c].shape.points;
+        for (Vector3& x : like) x = warp(x);
+        align_start(mesh, pants.curves[c].curve.vertices, like);
     }
     order_patches(pants, record, shell_of_record);
     return pants;

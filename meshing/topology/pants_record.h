@@ -49,9 +49,10 @@ struct PantsRecord {
                                        const Landmarks& landmarks);
 
 /// Cuts another member of the family as the first one was: the same curves in the same order and
-/// direction around the same patches. The shape of each curve is carried over by the boxes and by
-/// what the two members' landmarks have in common, and then pulled tight; boundary loops are told
-/// by their names, or else by where they lie, shells by genus and where they lie.
+/// direction around the same patches, from corresponding places on. The shape of each curve is
+/// carried over by the boxes and by what the two members' landmarks have in common, and then pulled
+/// tight; boundary loops are told by their names, or else by where they lie, shells by genus and
+/// where they lie.
 ///
 /// @param boundary_names  as PantsOptions::boundary_names
 /// @param width           as PantsOptions::loop_width

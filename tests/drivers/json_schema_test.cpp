@@ -108,3 +108,20 @@ TEST_CASE("schema: the JSON of mesh has the keys and types that are documented",
     CHECK(found.count("volume.signature") == (job.starts_with("pant") ? 1 : 0));
     check_schema(found, "mesh_schema.md");
 }
+
+TEST_CASE("schema: the JSON of a family has the keys and types that are documented", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    io::write_text(folder.path() / "m.csv", "length\n120\n5000\n");
+    io::write_text(folder.path() / "f.toml",
+                   "[geometry]\npart = \"cube\"\n[meshing]\nelement_size = 50\n[family]\n"
+                   "parameters = \"m.csv\"\n");
+    const auto result = tests::run_couture("mesh f.toml --json", folder.path());
+    CHECK(result.exit_code == 1);
+    Json object = Json::parse(result.output);
+    // Names of parameters are those of the part.
+    for (Json& member : object["members"]) member["parameters"] = Json::object();
+    std::map<std::string, Json> found;
+    collect(object, "", found);
+    CHECK(found.count("members[].homology.worst_curve") == 1);
+    check_schema(found, "mesh_family_schema.md");
+}

@@ -4,6 +4,8 @@
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
+#include "io/template_file.h"
+#include "meshing/layout/cuboid_decomposition.h"
 #include "meshing/parts/part_landmarks.h"
 #include "tests/io/temporary_folder.h"
 
@@ -20,7 +22,7 @@ TEST_CASE("pants record: what is written is read again, to the last bit", "[io]"
     const io::TemporaryFolder folder;
     const auto path = folder / "pants.json";
     io::write_pants_record(path, record, "here");
-    const PantsRecord again = io::read_pants_record(path);
+    const PantsRecord again = io::read_member_record(path).pants;
     REQUIRE(again.shells.size() == 1);
     CHECK(again.shells[0].genus == 2);
     CHECK(again.shells[0].center == record.shells[0].center);
@@ -46,7 +48,7 @@ TEST_CASE("pants record: files that hold something else are refused", "[io]") {
     const auto refused = [&](const std::string& text, const std::string& message) {
         io::write_text(path, text);
         CAPTURE(text);
-        CHECK_THROWS_WITH(io::read_pants_record(path),
+        CHECK_THROWS_WITH(io::read_member_record(path),
                           Contains("pants.json: ") && Contains(message));
     };
     refused("", "no JSON from byte");
@@ -72,5 +74,51 @@ TEST_CASE("pants record: files that hold something else are refused", "[io]") {
             "curves[0].points[0] has 2 numbers");
     refused(good + R"("curves": [{"kind": "cycle", "name": "", "points": [], "normals": []}]})",
             "curves[0] has 0 points");
-    CHECK_THROWS_AS(io::read_pants_record(folder / "no.json"), FileError);
+    CHECK_THROWS_AS(io::read_member_record(folder / "no.json"), FileError);
+}
+
+TEST_CASE("layout record: what is written is read again", "[io]") {
+    const PartSurface part = make_part_surface("cube");
+    SurfaceMesh mesh = make_surface_mesh(part.soup);
+    const Features features = detect_features(mesh);
+    const PantsDecomposition pants = decompose_into_pants(mesh);
+    const PantsRecord cuts = record_pants(mesh, pants, part_landmarks(part));
+    LayoutRecord record = decompose_into_cuboids(mesh, features, pants, fill_boundaries(mesh),
+                                                 io::built_in_templates())
+                              .record;
+    record.elements = {3, 4, 5};
+    record.rotations = {{2, 1}};
+    record.sets = {{"low", {{0, 2}, {0, 4}}}};
+    const io::TemporaryFolder folder;
+    const auto path = folder / "layout.json";
+    io::write_layout_record(path, cuts, record, "here");
+    const MemberRecord again = io::read_member_record(path);
+    CHECK(again.pants.landmarks.corners == cuts.landmarks.corners);
+    REQUIRE(again.layout);
+    CHECK(again.layout->elements == record.elements);
+    CHECK(again.layout->rotations == record.rotations);
+    CHECK(again.layout->sets == record.sets);
+    REQUIRE(again.layout->patches.size() == 1);
+    const LayoutRecord::Patch& first = record.patches[0];
+    const LayoutRecord::Patch& second = again.layout->patches[0];
+    CHECK(second.shape == first.shape);
+    CHECK(second.match.nodes == first.match.nodes);
+    CHECK(second.match.curves == first.match.curves);
+    REQUIRE(second.features.nodes.size() == 8);
+    REQUIRE(second.features.curves.size() == 12);
+    for (std::size_t n = 0; n < 8; ++n) {
+        CHECK(second.features.nodes[n].place == first.features.nodes[n].place);
+        CHECK(second.features.nodes[n].curve_ends == first.features.nodes[n].curve_ends);
+        CHECK(second.features.nodes[n].loop == -1);
+    }
+    for (std::size_t c = 0; c < 12; ++c) {
+        CHECK(second.features.curves[c].middle == first.features.curves[c].middle);
+        CHECK(second.features.curves[c].kind == ArcKind::convex);
+    }
+    io::write_pants_record(path, cuts, "here");
+    CHECK_FALSE(io::read_member_record(path).layout);
+    record.patches[0].match.nodes.pop_back();
+    io::write_layout_record(path, cuts, record, "here");
+    CHECK_THROWS_WITH(io::read_member_record(path),
+                      Contains("layout.patches[0]: nodes of 0 loops, 7 corners and 12 curves"));
 }

@@ -1,0 +1,76 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+#include "tests/drivers/run_program.h"
+
+using namespace couture;
+using namespace couture::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string deck =
+    "[geometry]\npart = \"pant\"\n[meshing]\nopen = \"caps\"\nedge_length = 8\nelement_size = 20\n"
+    "[family]\nparameters = \"m.csv\"\n";
+
+}  // namespace
+
+TEST_CASE("mesh family: members are done, those that fail are reported", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    io::write_text(folder.path() / "m.csv", "name,X1,Z2\na,20,0\nwrong,400,0\nb,-20,15\n");
+    const auto result = run_couture("mesh f.toml --png --json --out o", folder.path());
+    CHECK(result.exit_code == 1);
+    const auto object = nlohmann::json::parse(result.output);
+    CHECK(object["status"] == "failed");
+    CHECK(object["failed_members"] == 1);
+    CHECK(object["failed_midpoints"] == 0);
+    CHECK(object["reference"] == "reference");
+    const auto& members = object["members"];
+    REQUIRE(members.size() == 4);
+    for (const int m : {0, 1, 3}) {
+        CAPTURE(m);
+        CHECK(members[m]["status"] == "done");
+        CHECK(members[m]["signature"] == object["signature"]);
+        CHECK(members[m]["certificate"] == "valid");
+        CHECK(members[m]["homology"]["homologous"] == true);
+        CHECK(members[m]["homology"]["points_per_curve"] == 200);
+    }
+    CHECK(members[3]["midpoint_with_reference"] == "valid");
+    CHECK(members[3]["midpoint_with_previous"] == "valid");
+    CHECK(members[2]["status"] == "failed");
+    CHECK_THAT(members[2]["reason"].get<std::string>(), Contains("X1 = 400"));
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o")) {
+        files.push_back(entry.path().filename().string());
+    }
+    std::sort(files.begin(), files.end());
+    CHECK(files == std::vector<std::string>{"a_volume.xml", "b_volume.xml", "f_family.png",
+                                            "reference_layout.json", "reference_volume.xml"});
+    CHECK(object["files"].size() == 5);
+    // The same layout by the record of the reference alone.
+    const auto again = run_couture(
+        "mesh pant --set X1=20 --edge-length 8 --stage volume --like o/reference_layout.json "
+        "--json --out again",
+        folder.path());
+    REQUIRE(again.exit_code == 0);
+    CHECK(nlohmann::json::parse(again.output)["volume"]["signature"] == object["signature"]);
+    CHECK(io::read_text(folder.path() / "again/pant_volume.xml") ==
+          io::read_text(folder.path() / "o/a_volume.xml"));
+}
+
+TEST_CASE("mesh family: files are matched by where they lie", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert cube a.off", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("convert cube --set length=120 --edge-length 15 b.off", folder.path())
+                .exit_code == 0);
+    io::write_text(folder.path() / "m.csv", "name,surface\nb,b.off\n");
+    io::write_text(folder.path() / "f.toml",
+                   "[geometry]\nsurface = \"a.off\"\n[meshing]\nelement_size = 50\n[family]\n"
+                   "parameters = \"m.csv\"\n");
+    const auto result = run_couture("mesh f.toml", folder.path());
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.output, Contains("2 of 2 members done, midpoints of 0 not certified"));
+    CHECK_THAT(io::read_text(folder.path() / "out/f/b_volume.xml"), Contains("face_6"));
+}
