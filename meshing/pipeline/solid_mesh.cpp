@@ -67,16 +67,13 @@ std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& c
 
 }  // namespace
 
-SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
-                     const PantsDecomposition& pants, const ClosingCaps& caps,
-                     const TemplateLibrary& library, const SolidMeshOptions& options) {
+SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& options) {
     check_options(options);
     const auto say = [&](std::string_view what) {
         if (options.progress) options.progress(what);
     };
     SolidMesh solid;
-    say("choosing and drawing cuboids");
-    solid.cuboids = decompose_into_cuboids(opened, features, pants, caps, library, options.match);
+    solid.cuboids = std::move(cuboids);
     SurfaceMesh& mesh = solid.cuboids.mesh;
     EmbeddedLayout& surface = solid.cuboids.surface;
     const LayoutCells cells = make_layout_cells(solid.cuboids.volume);
@@ -102,7 +99,8 @@ SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
             "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
-            "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, loop) "
+            "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
+            "loop) "
             "or templates help, or smaller elements",
             relocated.report.n_inverted);
     }

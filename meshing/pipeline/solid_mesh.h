@@ -15,13 +15,12 @@
 
 namespace couture::meshing {
 
-/// The stages from pants to a volume, in order.
+/// The stages from cuboids to a volume, in order.
 enum class SolidStage { layout, map, quads, volume };
 
 struct SolidMeshOptions {
     /// The last stage that is run.
     SolidStage last = SolidStage::volume;
-    MatchOptions match = {};
     /// Wanted length of a spline element; 0: a twentieth of the diagonal of the surface's box.
     double element_size = 0.0;
     /// Elements of each sheet of cuboids, at least.
@@ -52,17 +51,15 @@ struct SolidMesh {
     std::optional<LayoutVolume> volume;
 };
 
-/// From a surface that is cut into pants to trivariate splines: cuboids, aligned global map, quads
-/// whose nodes have moved to better places, splines.
+/// From a solid's cuboids to trivariate splines: aligned global map, quads whose nodes have moved
+/// to better places, splines.
 ///
-/// @param opened, features, pants, caps, library  as decompose_into_cuboids
+/// @param cuboids  of decompose_into_cuboids or place_layout
 /// @throws InputError     for options out of range, and as the stages
 /// @throws GeometryError  if quads stay turned over, and as the stages
 ///
 /// Source: [Maquart19] Fig. 4.12, Sec. 6.3.5.
-[[nodiscard]] SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
-                                   const PantsDecomposition& pants, const ClosingCaps& caps,
-                                   const TemplateLibrary& library,
+[[nodiscard]] SolidMesh mesh_solid(CuboidDecomposition cuboids,
                                    const SolidMeshOptions& options = {});
 
 }  // namespace couture::meshing
