@@ -149,6 +149,11 @@ class Placer {
 
     [[nodiscard]] bool is_feature(EdgeHandle edge) const { return mesh_.data(edge).feature >= 0; }
 
+    // Whether the surface does not look the other way, as that across a thin wall does.
+    [[nodiscard]] bool is_same_side(int node, VertexHandle vertex) const {
+        return vertex_normal(mesh_, vertex).dot(normals_[node]) > 0.0;
+    }
+
     // Pairs of vertices and nodes, the nearest first, one to one.
     void place_nearest(std::vector<std::tuple<double, int, int>> offers) {
         std::ranges::sort(offers);
@@ -165,7 +170,7 @@ class Placer {
             const int degree = n_feature_edges(corner);
             if (degree < 2) continue;
             for (int node = 0; node < layout_.n_nodes(); ++node) {
-                if (arcs_at_[node].empty()) continue;
+                if (arcs_at_[node].empty() || !is_same_side(node, corner)) continue;
                 const double d = (mesh_.point(corner) - positions_[node]).norm();
                 if (d > reach_[node]) continue;
                 offers.emplace_back(d * (1.0 + 0.5 * std::abs(degree - n_sharp_[node])), node,
@@ -182,7 +187,8 @@ class Placer {
             for (int node = 0; node < layout_.n_nodes(); ++node) {
                 if (n_sharp_[node] < 2 || node_vertex_[node].is_valid()) continue;
                 const double d = (mesh_.point(vertex) - positions_[node]).norm();
-                if (d <= reach_[node]) offers.emplace_back(d, node, vertex.idx());
+                if (d > reach_[node] || !is_same_side(node, vertex)) continue;
+                offers.emplace_back(d, node, vertex.idx());
             }
         }
         place_nearest(std::move(offers));
