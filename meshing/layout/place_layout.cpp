@@ -312,21 +312,17 @@ class Placer {
         ties_.push_back(std::move(tie));
     }
 
-    // Whether the solid fills more than half a turn around most of a path.
+    // Whether the solid fills more than half a turn around some part of a path.
     [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
-        double turn = 0.0;
         for (std::size_t k = 0; k + 1 < path.size(); ++k) {
             const HalfedgeHandle h = mesh_.find_halfedge(path[k], path[k + 1]);
-            const EdgeHandle edge = mesh_.edge_handle(h);
             const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
             const Vector3 right =
                 face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
-            const double sign =
-                right.cross(left).dot(mesh_.point(path[k + 1]) - mesh_.point(path[k])) > 0.0 ? 1.0
-                                                                                             : -1.0;
-            turn += sign * dihedral_angle(mesh_, edge) * edge_length(mesh_, edge);
+            const Vector3 along = mesh_.point(path[k + 1]) - mesh_.point(path[k]);
+            if (right.cross(left).dot(along) < 0.0) return true;
         }
-        return turn < 0.0;
+        return false;
     }
 
     // Arcs between nodes on features, the straightest first.
