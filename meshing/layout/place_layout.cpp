@@ -320,7 +320,7 @@ class Placer {
             const Vector3 right =
                 face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
             const Vector3 along = mesh_.point(path[k + 1]) - mesh_.point(path[k]);
-            if (right.cross(left).dot(along) < 0.0) return true;
+            if (left.cross(right).dot(along) < 0.0) return true;
         }
         return false;
     }
@@ -457,7 +457,21 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     result.mesh = mesh;
     std::vector<LayoutTie> ties =
         Placer(result.mesh, features, boundary.layout, placed.positions).run();
+    // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
+    // those of the other side of a wall.
+    std::vector<bool> is_held(result.mesh.n_vertices(), false);
+    for (const LayoutTie& tie : ties) {
+        if (!tie.is_feature) continue;
+        is_held[tie.vertices.front().idx()] = true;
+        is_held[tie.vertices.back().idx()] = true;
+    }
     draw_decomposition(placed.layout, std::move(ties), result);
+    for (std::size_t n = 0; n < result.surface.nodes.size(); ++n) {
+        const int vertex = result.surface.nodes[n].idx();
+        if (vertex >= 0 && vertex < static_cast<int>(is_held.size()) && is_held[vertex]) {
+            result.surface.is_corner_node[n] = true;
+        }
+    }
     return result;
 }
 
