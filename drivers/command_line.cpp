@@ -147,6 +147,10 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--element-size", mesh->element_size,
                     "length of a spline element (default: a twentieth of the diagonal)");
     sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
+    sub->add_option("--layout", mesh->layout,
+                    "a coarse mesh of cuboids (.mesh, .vtk) that lies about where the solid does: "
+                    "it is placed on the surface instead of templates")
+        ->check(CLI::ExistingFile);
     sub->add_option(
            "--like", mesh->like,
            "cut as another member of the family was: its NAME_pants.json; or NAME_layout.json: "

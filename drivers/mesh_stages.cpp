@@ -16,6 +16,8 @@
 #include "io/picture.h"
 #include "io/surface_writer.h"
 #include "io/template_file.h"
+#include "io/volumetric_layout_file.h"
+#include "meshing/layout/place_layout.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 #include "meshing/surface/cut_surface.h"
@@ -203,6 +205,27 @@ io::Scene make_curvature_scene(SurfaceMesh mesh) {
     return scene;
 }
 
+// The deck's own layout, placed on the surface. Warns of features that it leaves out.
+CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages) {
+    if (stages.invariants.n_boundaries > 0) {
+        throw InputError(
+            "mesh: a layout of one's own ([meshing] layout, --layout) needs a closed surface, this "
+            "one has {} boundary loops; leave out what opens caps, or fill the holes",
+            stages.invariants.n_boundaries);
+    }
+    CuboidDecomposition cuboids =
+        place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
+    double length = 0.0;
+    for (const FeatureCurve& curve : stages.features.curves) length += curve.length;
+    const double untied = untied_length(cuboids);
+    if (untied > 0.0) {
+        log::warn(fmt::format(
+            "{}: no arc runs along {:.3g} of {:.3g} of the surface's sharp edges; they are rounded",
+            deck.layout.string(), untied, length));
+    }
+    return cuboids;
+}
+
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
                      const std::vector<io::SurfaceLine>& lines) {
     const SurfaceMesh& mesh = stages.mesh;
@@ -276,6 +299,17 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     stages.surface_name = surface_name(stages.mesh);
     check_gauss_bonnet(stages.mesh);
     if (last < MeshStage::loops) return stages;
+    meshing::SolidMeshOptions solid = deck.solid;
+    solid.progress = [&](std::string_view what) {
+        log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
+    };
+    solid.faces = std::move(surface.faces);
+    if (last > MeshStage::pants) solid.last = solid_stage(last);
+    if (!deck.layout.empty() && last > MeshStage::pants) {
+        solid.progress("placing the layout");
+        stages.solid = mesh_solid(placed_cuboids(deck, stages), solid);
+        return stages;
+    }
     std::optional<ClosingCaps> caps = surface.caps;
     if (last > MeshStage::pants) {
         if (!caps) caps = fill_boundaries(stages.mesh);
@@ -291,19 +325,19 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     if (last >= MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
     if (last <= MeshStage::pants) return stages;
-    meshing::SolidMeshOptions solid = deck.solid;
-    solid.last = solid_stage(last);
-    solid.progress = [&](std::string_view what) {
-        log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
-    };
-    solid.faces = std::move(surface.faces);
-    if (surface.record && surface.record->layout) {
-        solid.like = carry_over(*surface.record->layout,
-                                MemberWarp(surface.record->pants, stages.mesh, surface.landmarks));
-    }
     TemplateLibrary library = io::built_in_templates();
     if (!deck.templates.empty()) io::add_templates(deck.templates, library);
-    stages.solid = mesh_solid(stages.mesh, stages.features, *stages.pants, *caps, library, solid);
+    solid.progress("choosing and drawing cuboids");
+    const auto cuboids = [&] {
+        if (!surface.record || !surface.record->layout) {
+            return decompose_into_cuboids(stages.mesh, stages.features, *stages.pants, *caps,
+                                          library);
+        }
+        const MemberWarp warp(surface.record->pants, stages.mesh, surface.landmarks);
+        return repeat_cuboids(stages.mesh, stages.features, *stages.pants, *caps, library,
+                              carry_over(*surface.record->layout, warp));
+    };
+    stages.solid = mesh_solid(cuboids(), solid);
     return stages;
 }
 

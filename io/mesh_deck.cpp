@@ -181,7 +181,13 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.choice("parameterization", {"aligned", "harmonic"}).value_or("aligned") ==
         "aligned";
     read_existing_file(section, "templates", folder, deck.templates);
+    read_existing_file(section, "layout", folder, deck.layout);
     read_existing_file(section, "like", folder, deck.like);
+    if (!deck.layout.empty() && !(deck.templates.empty() && deck.like.empty())) {
+        section.mistake("layout",
+                        "'layout' takes the place of pants and templates: 'templates' and 'like' "
+                        "have no place beside it");
+    }
     if (!deck.like.empty() && !(pants.loops.empty() && deck.cycles_through.empty())) {
         section.mistake("like",
                         "'like' repeats all cuts of another member: [[meshing.loop]] and "

@@ -77,6 +77,8 @@ struct MeshDeck {
     meshing::SolidMeshOptions solid;
     /// Templates beside the built-in ones; empty: none.
     std::filesystem::path templates;
+    /// A coarse mesh of cuboids that is placed on the surface instead of templates; empty: none.
+    std::filesystem::path layout;
     /// Decisions of another member of the family, to be repeated; empty: none.
     std::filesystem::path like;
     /// Nothing: one solid.

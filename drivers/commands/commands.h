@@ -54,6 +54,8 @@ struct MeshOptions {
     double element_size = 0.0;
     /// Of splines.
     std::optional<int> degree;
+    /// A coarse mesh of cuboids to be placed on the surface; may be empty.
+    std::filesystem::path layout;
     /// Decisions of another member, to be repeated; may be empty.
     std::filesystem::path like;
     /// Edge length of a part's triangles; 0: its default.

@@ -77,9 +77,9 @@ io::MeshDeck deck_of(const MeshOptions& options) {
         const bool has_more =
             options.edge_length != 0.0 || options.feature_angle || !options.cycle_weights.empty() ||
             !options.merge_weights.empty() || options.element_size != 0.0 || options.degree ||
-            !options.open.empty() || !options.open_at.empty() || !options.open_facing.empty() ||
-            options.most_boundaries || !options.like.empty() || options.fix || options.fill_holes ||
-            options.shell;
+            !options.layout.empty() || !options.open.empty() || !options.open_at.empty() ||
+            !options.open_facing.empty() || options.most_boundaries || !options.like.empty() ||
+            options.fix || options.fill_holes || options.shell;
         if (has_more) {
             throw InputError(
                 "mesh: with a deck only --stage, --set, --out and --png are options; write the "
@@ -135,6 +135,7 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     }
     deck.solid.element_size = options.element_size;
     deck.solid.volume.degree = options.degree.value_or(deck.solid.volume.degree);
+    deck.layout = options.layout;
     deck.like = options.like;
     if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
                                options.most_boundaries)) {
@@ -251,9 +252,10 @@ std::string kinds_of_patches(const meshing::PantsDecomposition& pants) {
 
 void print_solid(const meshing::SolidMesh& solid) {
     const auto& layout = solid.cuboids.surface.layout;
-    fmt::print("layout    {} cuboids, {} quads, {} arcs on the surface; templates {}\n",
+    const auto& templates = solid.cuboids.templates;
+    fmt::print("layout    {} cuboids, {} quads, {} arcs on the surface{}{}\n",
                solid.cuboids.volume.n_cuboids(), layout.n_quads(), layout.n_arcs(),
-               fmt::join(solid.cuboids.templates, ", "));
+               templates.empty() ? "" : "; templates ", fmt::join(templates, ", "));
     if (solid.map) {
         const auto& report = solid.map->report;
         fmt::print("map       energy {:.4g} to {:.4g} in {} steps, {} triangles flipped\n",
@@ -280,17 +282,7 @@ void print_solid(const meshing::SolidMesh& solid) {
         report.quality.mean_scaled_jacobian, solid.distance->surface, solid.distance->features);
 }
 
-void print_text(const MeshStages& stages, MeshStage last) {
-    const auto& invariants = stages.invariants;
-    fmt::print("surface   {} vertices, {} edges, {} triangles: {}, Euler characteristic {}\n",
-               invariants.n_vertices, invariants.n_edges, invariants.n_faces, stages.surface_name,
-               invariants.euler_characteristic);
-    if (last >= MeshStage::features) {
-        fmt::print("features  {} curves, {} corners, {} smooth faces\n",
-                   stages.features.curves.size(), stages.features.corners.size(),
-                   stages.features.regions.size());
-    }
-    if (!stages.pants) return;
+void print_pants(const MeshStages& stages, MeshStage last) {
     for (const auto& curve : stages.pants->curves) {
         if (last == MeshStage::loops && curve.kind == meshing::PantsCurveKind::cycle) continue;
         fmt::print("{:<9} length {:.6g}{}\n", meshing::to_string(curve.kind), curve.length,
@@ -302,6 +294,19 @@ void print_text(const MeshStages& stages, MeshStage last) {
                    are_pants ? kinds_of_patches(*stages.pants)
                              : fmt::format(" ({})", stages.surface_name));
     }
+}
+
+void print_text(const MeshStages& stages, MeshStage last) {
+    const auto& invariants = stages.invariants;
+    fmt::print("surface   {} vertices, {} edges, {} triangles: {}, Euler characteristic {}\n",
+               invariants.n_vertices, invariants.n_edges, invariants.n_faces, stages.surface_name,
+               invariants.euler_characteristic);
+    if (last >= MeshStage::features) {
+        fmt::print("features  {} curves, {} corners, {} smooth faces\n",
+                   stages.features.curves.size(), stages.features.corners.size(),
+                   stages.features.regions.size());
+    }
+    if (stages.pants) print_pants(stages, last);
     if (stages.solid) print_solid(*stages.solid);
 }
 
@@ -336,6 +341,8 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     std::vector<std::string> files;
     for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
         const auto which = static_cast<MeshStage>(stage);
+        const bool has_no_pants = !stages.pants && last > MeshStage::pants;
+        if (has_no_pants && (which == MeshStage::loops || which == MeshStage::pants)) continue;
         for (const auto& file :
              write_mesh_stage(folder / fmt::format("{}_{}", name, to_string(which)), stages, which,
                               options.png, provenance)) {

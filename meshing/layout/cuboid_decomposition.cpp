@@ -5,10 +5,9 @@
 #include <set>
 
 #include "iga/core/error.h"
-#include "meshing/layout/embed_layout.h"
 #include "meshing/layout/glue.h"
 #include "meshing/layout/layout_choice.h"
-#include "meshing/layout/padding.h"
+#include "meshing/layout/padded_ties.h"
 #include "meshing/layout/patch_features.h"
 
 namespace couture::meshing {
@@ -34,10 +33,7 @@ class Drawing {
         CuboidDecomposition result;
         result.mesh = close_caps(opened_, caps_);
         std::vector<LayoutTie> ties = make_ties();
-        result.volume = padded(ties);
-        LayoutBoundary boundary = layout_boundary(result.volume);
-        result.sides = std::move(boundary.sides);
-        result.surface = embed_layout(result.mesh, boundary.layout, ties);
+        draw_decomposition(std::move(glued_.layout), std::move(ties), result);
         result.templates = choice_.templates;
         return result;
     }
@@ -134,57 +130,6 @@ class Drawing {
             for (int i = k; i <= k_end; ++i) tie.nodes.push_back(nodes[i % n]);
             ties.push_back(std::move(tie));
         }
-    }
-
-    // The glued layout with sheets of cuboids where outer sides of one meet at no sharp edge, and
-    // the ties on it.
-    [[nodiscard]] VolumetricLayout padded(std::vector<LayoutTie>& ties) const {
-        const LayoutBoundary before = layout_boundary(glued_.layout);
-        std::vector<bool> is_smooth(before.layout.n_arcs(), true);
-        for (const LayoutTie& tie : ties) {
-            if (!tie.is_feature || tie.is_reflex) continue;
-            for (std::size_t k = 0; k + 1 < tie.nodes.size(); ++k) {
-                is_smooth[before.layout.find_arc(tie.nodes[k], tie.nodes[k + 1])] = false;
-            }
-        }
-        PaddedLayout padded = pad_layout(glued_.layout, is_smooth);
-        const LayoutBoundary after = layout_boundary(padded.layout);
-        for (LayoutTie& tie : ties) {
-            std::vector<int> nodes{padded.node_in_place[tie.nodes[0]]};
-            for (std::size_t k = 1; k < tie.nodes.size(); ++k) {
-                const int next = padded.node_in_place[tie.nodes[k]];
-                for (const int node : shortest_way(after.layout, nodes.back(), next)) {
-                    nodes.push_back(node);
-                }
-            }
-            tie.nodes = std::move(nodes);
-        }
-        return std::move(padded.layout);
-    }
-
-    // Nodes behind the first one up to the last: a sheet that ends beside an arc divides those that
-    // meet it.
-    [[nodiscard]] static std::vector<int> shortest_way(const QuadLayout& layout, int from, int to) {
-        if (layout.find_arc(from, to) >= 0) return {to};
-        std::vector<std::vector<int>> neighbours(layout.n_nodes());
-        for (const QuadLayout::Arc& arc : layout.arcs()) {
-            neighbours[arc.from].push_back(arc.to);
-            neighbours[arc.to].push_back(arc.from);
-        }
-        std::vector<int> before(layout.n_nodes(), -1);
-        std::vector<int> queue{from};
-        before[from] = from;
-        for (std::size_t k = 0; k < queue.size() && before[to] < 0; ++k) {
-            for (const int next : neighbours[queue[k]]) {
-                if (before[next] >= 0) continue;
-                before[next] = queue[k];
-                queue.push_back(next);
-            }
-        }
-        std::vector<int> way;
-        for (int node = to; node != from; node = before[node]) way.push_back(node);
-        std::ranges::reverse(way);
-        return way;
     }
 
     const SurfaceMesh& opened_;

@@ -65,15 +65,24 @@ QuadMesh to_quad_mesh(const LayoutSamples& samples) {
     const SampleGrid grid = make_sample_grid(samples.layout, samples.n_cells);
     const MatrixX points = to_points(samples, grid);
     QuadMesh mesh;
-    for (int i = 0; i < grid.n_points; ++i) mesh.points.emplace_back(points.col(i));
+    // Nodes on no quad lie inside a volume.
+    std::vector<int> number(grid.n_points, -1);
+    const auto number_of = [&](int point) {
+        if (number[point] < 0) {
+            number[point] = static_cast<int>(mesh.points.size());
+            mesh.points.emplace_back(points.col(point));
+        }
+        return number[point];
+    };
     for (std::size_t q = 0; q < grid.quads.size(); ++q) {
         const auto [n_s, n_t] = grid.sizes[q];
         for (int j = 0; j < n_t; ++j) {
             for (int i = 0; i < n_s; ++i) {
                 const int at = j * (n_s + 1) + i;
                 const auto& numbers = grid.quads[q];
-                mesh.quads.push_back(
-                    {numbers[at], numbers[at + 1], numbers[at + n_s + 2], numbers[at + n_s + 1]});
+                mesh.quads.push_back({number_of(numbers[at]), number_of(numbers[at + 1]),
+                                      number_of(numbers[at + n_s + 2]),
+                                      number_of(numbers[at + n_s + 1])});
             }
         }
     }

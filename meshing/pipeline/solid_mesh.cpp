@@ -79,23 +79,17 @@ void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
 
 }  // namespace
 
-SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
-                     const PantsDecomposition& pants, const ClosingCaps& caps,
-                     const TemplateLibrary& library, const SolidMeshOptions& options) {
+SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& options) {
     check_options(options);
     const auto say = [&](std::string_view what) {
         if (options.progress) options.progress(what);
     };
     SolidMesh solid;
-    say("choosing and drawing cuboids");
-    solid.cuboids =
-        options.like
-            ? repeat_cuboids(opened, features, pants, caps, library, *options.like)
-            : decompose_into_cuboids(opened, features, pants, caps, library, options.match);
+    solid.cuboids = std::move(cuboids);
     SurfaceMesh& mesh = solid.cuboids.mesh;
     EmbeddedLayout& surface = solid.cuboids.surface;
     const LayoutCells cells = make_layout_cells(solid.cuboids.volume);
-    if (!options.like) complete_record(solid.cuboids, cells, options);
+    if (solid.cuboids.record.elements.empty()) complete_record(solid.cuboids, cells, options);
     const std::vector<int>& elements = solid.cuboids.record.elements;
     if (static_cast<int>(elements.size()) != cells.n_sheets()) {
         throw TopologyError(

@@ -17,20 +17,16 @@
 
 namespace couture::meshing {
 
-/// The stages from pants to a volume, in order.
+/// The stages from cuboids to a volume, in order.
 enum class SolidStage { layout, map, quads, volume };
 
 struct SolidMeshOptions {
     /// The last stage that is run.
     SolidStage last = SolidStage::volume;
-    MatchOptions match = {};
     /// Wanted length of a spline element; 0: a twentieth of the diagonal of the surface's box.
     double element_size = 0.0;
     /// Elements of each sheet of cuboids, at least.
     int min_elements = 2;
-    /// What was decided on another member of the family, carried over to this one (carry_over):
-    /// repeated instead of templates, elements and names chosen here.
-    std::optional<LayoutRecord> like = {};
     /// The closed surface with the names of its faces: outer sides of cuboids become sets by them.
     /// Nothing: only caps are sets.
     std::optional<NamedFaces> faces = {};
@@ -57,17 +53,16 @@ struct SolidMesh {
     std::optional<VolumeDistance> distance;
 };
 
-/// From a surface that is cut into pants to trivariate splines: cuboids, aligned global map, quads
-/// whose nodes have moved to better places, splines.
+/// From a solid's cuboids to trivariate splines: aligned global map, quads whose nodes have moved
+/// to better places, splines.
 ///
-/// @param opened, features, pants, caps, library  as decompose_into_cuboids
+/// @param cuboids  of decompose_into_cuboids, repeat_cuboids or place_layout; numbers of elements
+///                 and names of sides that its record has are kept
 /// @throws InputError     for options out of range, and as the stages
 /// @throws GeometryError  if quads stay turned over, and as the stages
 ///
 /// Source: [Maquart19] Fig. 4.12, Sec. 6.3.5.
-[[nodiscard]] SolidMesh mesh_solid(const SurfaceMesh& opened, const Features& features,
-                                   const PantsDecomposition& pants, const ClosingCaps& caps,
-                                   const TemplateLibrary& library,
+[[nodiscard]] SolidMesh mesh_solid(CuboidDecomposition cuboids,
                                    const SolidMeshOptions& options = {});
 
 }  // namespace couture::meshing

@@ -9,6 +9,14 @@
 using namespace couture;
 using namespace couture::meshing;
 
+namespace {
+
+CuboidDecomposition cuboids_of(const Job& job) {
+    return decompose_into_cuboids(job.opened, job.features, job.pants, job.caps, some_templates());
+}
+
+}  // namespace
+
 TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pipeline]") {
     const std::string name = GENERATE("pant", "half_seal", "seal", "cylinder", "double_t");
     const int degree = GENERATE(2, 3);
@@ -17,7 +25,7 @@ TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pip
     SolidMeshOptions options;
     options.volume.degree = degree;
     const SolidMesh solid =
-        mesh_solid(job.opened, job.features, job.pants, job.caps, some_templates(), options);
+        mesh_solid(cuboids_of(job), options);
     CHECK(solid.map->report.n_flipped == 0);
     const auto& report = solid.volume->report;
     CHECK(report.parameterization.validity == iga::Validity::valid);
@@ -40,7 +48,7 @@ TEST_CASE("mesh_solid: stages end where they are asked to, options are checked",
     const Job job = cut_part("pant");
     SolidMeshOptions options;
     const auto run = [&] {
-        return mesh_solid(job.opened, job.features, job.pants, job.caps, some_templates(), options);
+        return mesh_solid(cuboids_of(job), options);
     };
     options.last = SolidStage::layout;
     CHECK_FALSE(run().map);
@@ -48,10 +56,10 @@ TEST_CASE("mesh_solid: stages end where they are asked to, options are checked",
     const SolidMesh quads = run();
     CHECK(quads.quads);
     CHECK_FALSE(quads.volume);
-    options.elements = quads.elements;
-    options.elements.pop_back();
-    CHECK_THROWS_AS(run(), InputError);
-    options.elements = {};
+    CuboidDecomposition cuboids = cuboids_of(job);
+    cuboids.record.elements = quads.cuboids.record.elements;
+    cuboids.record.elements.pop_back();
+    CHECK_THROWS_AS(mesh_solid(cuboids, options), TopologyError);
     options.samples_per_element = 1;
     CHECK_THROWS_AS(run(), InputError);
     options.samples_per_element = 4;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "meshing/layout/cuboid_decomposition.h"
+#include "meshing/layout/embed_layout.h"
+
+namespace couture::meshing {
+
+/// A volumetric layout with sheets of cuboids where outer sides of one cuboid meet at no sharp
+/// edge, with the ties on it.
+struct PaddedTies {
+    VolumetricLayout volume;
+    std::vector<LayoutTie> ties;
+};
+
+/// Arcs on ties of features that are not reflex are sharp, all others smooth (pad_layout). Nodes
+/// of ties become those in their place; a sheet that ends beside an arc divides it.
+///
+/// @param ties  on the nodes of the volume
+/// @throws InputError, TopologyError  as pad_layout
+[[nodiscard]] PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties);
+
+/// Pads a volume and draws its boundary along ties on the mesh of a decomposition; sets the
+/// decomposition's surface, volume and sides.
+///
+/// @throws as pad_with_ties and embed_layout
+void draw_decomposition(const VolumetricLayout& volume, std::vector<LayoutTie> ties,
+                        CuboidDecomposition& decomposition);
+
+}  // namespace couture::meshing

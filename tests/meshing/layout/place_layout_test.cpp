@@ -1,0 +1,85 @@
+#include "meshing/layout/place_layout.h"
+
+#include <catch2/catch.hpp>
+
+#include "iga/core/error.h"
+#include "meshing/parts/part_surface.h"
+#include "meshing/parts/parts.h"
+#include "meshing/pipeline/solid_mesh.h"
+
+using namespace couture;
+using namespace couture::meshing;
+
+namespace {
+
+// The corners of a spline part's patches.
+PlacedLayout cuboids_of(const std::string& name) {
+    const auto volume = std::get<iga::MultiPatch<3>>(make_part(name));
+    const double tolerance = 1e-6 * volume.size();
+    PlacedLayout placed;
+    for (const iga::Patch<3>& patch : volume.patches) {
+        auto& nodes = placed.layout.cuboids.emplace_back();
+        for (int k = 0; k < 8; ++k) {
+            const Vector3 x = patch.point(Vector3(k & 1, k >> 1 & 1, k >> 2 & 1));
+            int node = 0;
+            while (node < placed.layout.n_nodes &&
+                   (placed.positions[node] - x).norm() > tolerance) {
+                ++node;
+            }
+            if (node == placed.layout.n_nodes) {
+                ++placed.layout.n_nodes;
+                placed.positions.push_back(x);
+            }
+            nodes[k] = node;
+        }
+    }
+    return placed;
+}
+
+struct Solid {
+    SurfaceMesh mesh;
+    Features features;
+};
+
+Solid solid_of(const std::string& part) {
+    Solid solid{make_surface_mesh(make_part_surface(part).soup), {}};
+    solid.features = detect_features(solid.mesh);
+    return solid;
+}
+
+}  // namespace
+
+TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a certified volume",
+          "[layout]") {
+    const Solid solid = solid_of("half_seal");
+    const PlacedLayout placed = cuboids_of("half_seal");
+    REQUIRE(placed.layout.n_cuboids() == 10);
+    CuboidDecomposition cuboids = place_layout(solid.mesh, solid.features, placed);
+    CHECK(untied_length(cuboids) == 0.0);
+    CHECK(cuboids.volume.n_cuboids() == 10);
+    const double diagonal = bounding_box_diagonal(solid.mesh);
+    // Nodes on no sharp edge lie where embed_layout puts them.
+    constexpr double nearby = 0.1;
+    for (int n = 0; n < placed.layout.n_nodes; ++n) {
+        const VertexHandle vertex = cuboids.surface.nodes[n];
+        if (!vertex.is_valid()) continue;
+        INFO("node " << n);
+        CHECK((cuboids.mesh.point(vertex) - placed.positions[n]).norm() < nearby * diagonal);
+    }
+    for (const int degree : {2, 3}) {
+        SolidMeshOptions options;
+        options.volume.degree = degree;
+        const SolidMesh volume = mesh_solid(cuboids, options);
+        CHECK(volume.volume->report.parameterization.validity == iga::Validity::valid);
+        CHECK(volume.volume->report.max_distance < 0.001 * diagonal);
+    }
+}
+
+TEST_CASE("place_layout: refuses layouts of another genus or place", "[layout]") {
+    const Solid cube = solid_of("cube");
+    CHECK_THROWS_WITH(place_layout(cube.mesh, cube.features, cuboids_of("box")),
+                      Catch::Contains("no sharp edge of the surface"));
+    const Solid seal = solid_of("seal");
+    CHECK_THROWS_WITH(place_layout(seal.mesh, seal.features, cuboids_of("half_seal")),
+                      Catch::Contains("Euler characteristic 2, the surface"));
+}
