@@ -46,12 +46,15 @@ Meshed mesh_member(const std::string& name, const std::map<std::string, double>&
     NamedFaces faces{part.soup, part.face_of_triangle, {}};
     for (const PartFace& face : part.faces) faces.names.push_back(face.name);
     options.faces = faces;
-    if (like) {
-        options.like =
-            carry_over(*like->layout, MemberWarp(like->pants, member.mesh, member.landmarks));
-    }
+    const auto cuboids = [&] {
+        if (!like)
+            return decompose_into_cuboids(member.mesh, features, pants, caps, two_templates());
+        const MemberWarp warp(like->pants, member.mesh, member.landmarks);
+        return repeat_cuboids(member.mesh, features, pants, caps, two_templates(),
+                              carry_over(*like->layout, warp));
+    };
     Meshed result;
-    result.solid = mesh_solid(member.mesh, features, pants, caps, two_templates(), options);
+    result.solid = mesh_solid(cuboids(), options);
     result.record.pants = record_pants(member.mesh, pants, member.landmarks);
     result.record.layout = result.solid.cuboids.record;
     result.features = named_features(part);

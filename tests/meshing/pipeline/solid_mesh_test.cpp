@@ -24,8 +24,7 @@ TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pip
     const Job job = cut_part(name);
     SolidMeshOptions options;
     options.volume.degree = degree;
-    const SolidMesh solid =
-        mesh_solid(cuboids_of(job), options);
+    const SolidMesh solid = mesh_solid(cuboids_of(job), options);
     CHECK(solid.map->report.n_flipped == 0);
     const auto& report = solid.volume->report;
     CHECK(report.parameterization.validity == iga::Validity::valid);
@@ -47,9 +46,7 @@ TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pip
 TEST_CASE("mesh_solid: stages end where they are asked to, options are checked", "[pipeline]") {
     const Job job = cut_part("pant");
     SolidMeshOptions options;
-    const auto run = [&] {
-        return mesh_solid(cuboids_of(job), options);
-    };
+    const auto run = [&] { return mesh_solid(cuboids_of(job), options); };
     options.last = SolidStage::layout;
     CHECK_FALSE(run().map);
     options.last = SolidStage::quads;
