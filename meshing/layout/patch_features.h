@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "meshing/layout/cuboid_template.h"
@@ -38,6 +39,9 @@ struct PatchFeatures {
     /// In the order of the patch's boundary.
     std::vector<Loop> loops;
 };
+
+/// Whether the surface is convex or reflex along most of an edge path.
+[[nodiscard]] ArcKind kind_along(const SurfaceMesh& mesh, std::span<const VertexHandle> path);
 
 /// Feature curves of all patches. Parts of feature curves along cuts and boundaries are not among
 /// them.
