@@ -283,10 +283,12 @@ class Search {
         match.nodes = image_;
         match.curves = path_;
         const auto motion = best_motion();
-        int n_used_edges = 0;
-        for (const auto& path : path_) n_used_edges += static_cast<int>(path.size()) - 1;
+        // A patch without sharp edges leaves all of them unused, whichever the template; then
+        // cuboids count, since there will be one more below each of their outer sides.
+        int n_unused_edges = patch_.nodes.empty() ? 2 * shape_.layout.n_cuboids() : wall_.n_edges;
+        for (const auto& path : path_) n_unused_edges -= static_cast<int>(path.size()) - 1;
         match.cost = options_.cuboid_cost * shape_.layout.n_cuboids() +
-                     options_.unused_edge_cost * (wall_.n_edges - n_used_edges) +
+                     options_.unused_edge_cost * n_unused_edges +
                      options_.misfit_cost * motion.second;
         add_turns(std::move(match), motion.first, 0);
     }
