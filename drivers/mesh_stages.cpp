@@ -314,6 +314,7 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     if (last > MeshStage::pants) {
         if (!caps) caps = fill_boundaries(stages.mesh);
         if (options.cycle == CriterionWeights{}) options.cycle.sharp = clear_of_sharp_edges;
+        options.cuts_tori = true;
     }
     options.only_handles = last == MeshStage::loops;
     if (surface.record) {

@@ -140,10 +140,14 @@ class Entry {
     }
 
     CuboidTemplate generate() {
-        const std::vector<std::string> generators{"disc", "bar", "star", "polycube"};
+        const std::vector<std::string> generators{"disc", "bar", "ring", "star", "polycube"};
         const std::string generator = text("generator");
         if (generator == "disc") return make_disc_template(name_, read_rows<2>(need("section")));
         if (generator == "star") return make_star_template(name_, read_integer(need("legs")));
+        if (generator == "ring") {
+            return make_ring_template(name_, read_rows<2>(need("section")),
+                                      read_integer(need("corners")));
+        }
         if (generator == "polycube") {
             return make_polycube_template(name_, read_rows<3>(need("cells")), read_caps());
         }

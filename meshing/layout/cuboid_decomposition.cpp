@@ -1,10 +1,12 @@
 #include "meshing/layout/cuboid_decomposition.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/layout/equator.h"
 #include "meshing/layout/glue.h"
 #include "meshing/layout/layout_choice.h"
 #include "meshing/layout/padded_ties.h"
@@ -33,6 +35,9 @@ class Drawing {
         CuboidDecomposition result;
         result.mesh = close_caps(opened_, caps_);
         std::vector<LayoutTie> ties = make_ties();
+        for (int p = 0; p < n_patches_; ++p) {
+            if (patches_[p].is_bare()) tie_equator(p, result.mesh, ties);
+        }
         draw_decomposition(std::move(glued_.layout), std::move(ties), result);
         result.templates = choice_.templates;
         return result;
@@ -106,7 +111,6 @@ class Drawing {
         const PatchFeatures::Loop& loop = patches_[p].loops[l];
         const std::vector<int> nodes = glued_nodes(p, choice_.matches[p].loop_nodes[l]);
         const auto n = static_cast<int>(nodes.size());
-        const auto n_vertices = static_cast<int>(loop.vertices.size());
         // Positions of fixed nodes: on the loop, and among its nodes.
         std::vector<std::pair<int, int>> fixed;
         if (loop.nodes.empty()) {
@@ -119,17 +123,62 @@ class Drawing {
                 std::ranges::find(nodes, glued_.nodes[p][choice_.matches[p].nodes[node]]);
             fixed.emplace_back(vertex - loop.vertices.begin(), here - nodes.begin());
         }
-        const int curve = loop.side.curve;
+        const std::size_t first = ties.size();
+        add_ties(loop.vertices, nodes, fixed, fmt::format("curve {}", loop.side.curve), ties);
+        for (std::size_t t = first; t < ties.size(); ++t) {
+            ties[t].is_feature = is_sharp(ties[t].vertices);
+            ties[t].is_reflex = ties[t].is_feature && is_reflex(ties[t].vertices);
+        }
+    }
+
+    // The six nodes of one cuboid around two opposite ones lie on the equator.
+    void tie_equator(int p, SurfaceMesh& mesh, std::vector<LayoutTie>& ties) const {
+        constexpr std::array<int, 6> around{1, 3, 2, 6, 4, 5};
+        const std::vector<VertexHandle> loop = trace_equator(mesh).vertices;
+        const CuboidTemplate& shape = library_.find(choice_.templates[p]);
+        const auto& corners = shape.layout.cuboids[0];
+        std::vector<int> nodes;
+        for (const int corner : around) nodes.push_back(corners[corner]);
+        const auto n = static_cast<int>(nodes.size());
+        std::vector<std::pair<int, int>> fixed;
+        const std::vector<int> places = even_places(mesh, loop, n);
+        for (int k = 0; k < n; ++k) fixed.emplace_back(places[k], k);
+        add_ties(loop, glued_nodes(p, nodes), fixed, "equator", ties);
+    }
+
+    // Ties along a closed path from each fixed node to the next.
+    // @param fixed  positions in the path and among the nodes, in order
+    static void add_ties(const std::vector<VertexHandle>& path, const std::vector<int>& nodes,
+                         const std::vector<std::pair<int, int>>& fixed, const std::string& name,
+                         std::vector<LayoutTie>& ties) {
+        const auto n_vertices = static_cast<int>(path.size());
+        const auto n = static_cast<int>(nodes.size());
         for (std::size_t f = 0; f < fixed.size(); ++f) {
             const auto [v, k] = fixed[f];
             auto [v_end, k_end] = fixed[(f + 1) % fixed.size()];
             if (v_end <= v) v_end += n_vertices;
             if (k_end <= k) k_end += n;
-            LayoutTie tie{{}, {}, !is_cut(curve), false, fmt::format("curve {}", curve)};
-            for (int i = v; i <= v_end; ++i) tie.vertices.push_back(loop.vertices[i % n_vertices]);
+            LayoutTie tie;
+            tie.name = name;
+            for (int i = v; i <= v_end; ++i) tie.vertices.push_back(path[i % n_vertices]);
             for (int i = k; i <= k_end; ++i) tie.nodes.push_back(nodes[i % n]);
             ties.push_back(std::move(tie));
         }
+    }
+
+    // Whether a path runs along sharp edges or the boundary.
+    [[nodiscard]] bool is_sharp(const std::vector<VertexHandle>& path) const {
+        for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+            const HalfedgeHandle h = opened_.find_halfedge(path[k], path[k + 1]);
+            const EdgeHandle edge = opened_.edge_handle(h);
+            if (opened_.data(edge).feature < 0 && !opened_.is_boundary(edge)) return false;
+        }
+        return true;
+    }
+
+    [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
+        const EdgeHandle first = opened_.edge_handle(opened_.find_halfedge(path[0], path[1]));
+        return !opened_.is_boundary(first) && kind_along(opened_, path) == ArcKind::reflex;
     }
 
     const SurfaceMesh& opened_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "iga/core/error.h"
+#include "meshing/layout/glue.h"
 #include "meshing/layout/template_choice.h"
 
 namespace couture::meshing {
@@ -37,10 +38,14 @@ class Chooser {
             const PatchFeatures& patch = patches_[p];
             for (const CuboidTemplate& shape :
                  library_.with_caps(static_cast<int>(patch.loops.size()))) {
+                if (patch.is_bare() && shape.layout.n_cuboids() > 1) continue;
                 for (TemplateMatch& match : match_template(opened_, patch, shape, options_)) {
                     if (!has_room(patch, match)) continue;
-                    candidates[p].push_back({&shape, std::move(match)});
-                    offers[p].push_back(make_offer(patch, candidates[p].back()));
+                    Candidate candidate{&shape, std::move(match)};
+                    TemplateCandidate offer = make_offer(patch, candidate);
+                    if (!can_meet_itself(patch, candidate, offer)) continue;
+                    candidates[p].push_back(std::move(candidate));
+                    offers[p].push_back(std::move(offer));
                 }
             }
             if (candidates[p].empty()) throw_nothing_fits(p);
@@ -80,13 +85,45 @@ class Chooser {
         return true;
     }
 
+    [[nodiscard]] bool is_cut(int curve) const {
+        return pants_.curves[curve].kind != PantsCurveKind::boundary;
+    }
+
+    // Whether the template can be glued to itself where both sides of a cut are the patch's.
+    [[nodiscard]] bool can_meet_itself(const PatchFeatures& patch, const Candidate& candidate,
+                                       const TemplateCandidate& offer) const {
+        // Caps and demands by cuts, in the same order.
+        std::map<int, std::vector<int>> caps;
+        std::map<int, std::vector<const CutDemand*>> demands;
+        for (std::size_t l = 0; l < patch.loops.size(); ++l) {
+            if (is_cut(patch.loops[l].side.curve)) {
+                caps[patch.loops[l].side.curve].push_back(candidate.match.caps[l]);
+            }
+        }
+        for (const CutDemand& demand : offer.cuts) demands[demand.cut].push_back(&demand);
+        std::vector<CapJoint> joints;
+        for (const auto& [cut, sides] : demands) {
+            if (sides.size() < 2) continue;
+            const int rotation = matching_rotation(*sides[0], *sides[1]);
+            if (rotation < 0) return false;
+            joints.push_back({{0, caps[cut][0]}, {0, caps[cut][1]}, rotation});
+        }
+        if (joints.empty()) return true;
+        try {
+            static_cast<void>(glue_templates({*candidate.shape}, joints));
+            return true;
+        } catch (const TopologyError&) {
+            return false;
+        }
+    }
+
     [[nodiscard]] TemplateCandidate make_offer(const PatchFeatures& patch,
                                                const Candidate& candidate) const {
         TemplateCandidate offer;
         offer.cost = candidate.match.cost;
         for (std::size_t l = 0; l < patch.loops.size(); ++l) {
             const int curve = patch.loops[l].side.curve;
-            if (pants_.curves[curve].kind == PantsCurveKind::boundary) continue;
+            if (!is_cut(curve)) continue;
             CutDemand demand{curve, cap_pattern(*candidate.shape, candidate.match.caps[l]), {}};
             const std::map<int, int> places = places_on(patch, candidate.match, l);
             for (const int node : demand.pattern.loop) demand.places.push_back(places.at(node));

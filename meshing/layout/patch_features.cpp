@@ -14,6 +14,15 @@ HalfedgeHandle rotated(const SurfaceMesh& mesh, HalfedgeHandle h) {
     return mesh.opposite_halfedge_handle(mesh.prev_halfedge_handle(h));
 }
 
+// Whether the solid fills less than half a turn around an edge.
+bool is_convex(const SurfaceMesh& mesh, HalfedgeHandle h) {
+    const Vector3 left = face_normal(mesh, mesh.face_handle(h));
+    const Vector3 right = face_normal(mesh, mesh.face_handle(mesh.opposite_halfedge_handle(h)));
+    const Vector3 along =
+        mesh.point(mesh.to_vertex_handle(h)) - mesh.point(mesh.from_vertex_handle(h));
+    return left.cross(right).dot(along) >= 0.0;
+}
+
 class Collector {
   public:
     Collector(const SurfaceMesh& mesh, const Features& features, const PantsDecomposition& pants)
@@ -105,10 +114,8 @@ class Collector {
         const int number = static_cast<int>(features.curves.size());
         PatchFeatures::Curve curve{start.node, -1, ArcKind::convex, {mesh_.from_vertex_handle(h)}};
         curve.name = features_.curves[mesh_.data(mesh_.edge_handle(h)).feature].name;
-        double bend = 0.0;
         for (;;) {
             is_traced_.insert(mesh_.edge_handle(h).idx());
-            bend += edge_length(mesh_, mesh_.edge_handle(h)) * side_of_bend(h);
             curve.vertices.push_back(mesh_.to_vertex_handle(h));
             const HalfedgeHandle back = mesh_.opposite_halfedge_handle(h);
             const auto end = ends_.find(back.idx());
@@ -121,18 +128,8 @@ class Collector {
             h = rotated(mesh_, back);
             while (!is_inner_feature(h)) h = rotated(mesh_, h);
         }
-        curve.kind = bend >= 0.0 ? ArcKind::convex : ArcKind::reflex;
+        curve.kind = kind_along(mesh_, curve.vertices);
         features.curves.push_back(std::move(curve));
-    }
-
-    // +1 at a convex edge, -1 at a reflex one.
-    [[nodiscard]] double side_of_bend(HalfedgeHandle h) const {
-        const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
-        const Vector3 right =
-            face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
-        const Vector3 along =
-            mesh_.point(mesh_.to_vertex_handle(h)) - mesh_.point(mesh_.from_vertex_handle(h));
-        return left.cross(right).dot(along) < 0.0 ? -1.0 : 1.0;
     }
 
     void check_all_traced() const {
@@ -158,6 +155,15 @@ class Collector {
 };
 
 }  // namespace
+
+ArcKind kind_along(const SurfaceMesh& mesh, std::span<const VertexHandle> path) {
+    double bend = 0.0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+        const HalfedgeHandle h = mesh.find_halfedge(path[k], path[k + 1]);
+        bend += edge_length(mesh, mesh.edge_handle(h)) * (is_convex(mesh, h) ? 1.0 : -1.0);
+    }
+    return bend >= 0.0 ? ArcKind::convex : ArcKind::reflex;
+}
 
 std::vector<PatchFeatures> find_patch_features(const SurfaceMesh& mesh, const Features& features,
                                                const PantsDecomposition& pants) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,13 @@ struct PatchFeatures {
     std::vector<Curve> curves;
     /// In the order of the patch's boundary.
     std::vector<Loop> loops;
+
+    /// A sphere without sharp edges.
+    [[nodiscard]] bool is_bare() const { return loops.empty() && nodes.empty(); }
 };
+
+/// Whether the surface is convex or reflex along most of an edge path.
+[[nodiscard]] ArcKind kind_along(const SurfaceMesh& mesh, std::span<const VertexHandle> path);
 
 /// Feature curves of all patches. Parts of feature curves along cuts and boundaries are not among
 /// them.

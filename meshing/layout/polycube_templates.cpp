@@ -1,6 +1,8 @@
 #include "meshing/layout/polycube_templates.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "iga/core/error.h"
@@ -116,6 +118,37 @@ CuboidTemplate make_bar_template(std::string name, const std::vector<SectionCell
         }
     }
     return make_polycube_template(std::move(name), cells, caps);
+}
+
+CuboidTemplate make_ring_template(std::string name, const std::vector<SectionCell>& section,
+                                  int n_corners) {
+    if (n_corners < 3) {
+        throw InputError("template '{}': a ring has 3 corners or more, not {}", name, n_corners);
+    }
+    std::vector<GridCell> cells;
+    std::vector<PolycubeCap> caps{{side_names[x_low], {}}, {side_names[x_high], {}}};
+    for (int x = 0; x <= n_corners; ++x) {
+        for (const auto& [y, z] : section) {
+            const int number = static_cast<int>(cells.size());
+            if (x == 0) caps[0].sides.push_back({number, x_low});
+            if (x == n_corners) caps[1].sides.push_back({number, x_high});
+            cells.push_back({x, y, z});
+        }
+    }
+    CuboidTemplate shape = make_polycube_template(std::move(name), cells, caps);
+    const auto [least, most] =
+        std::ranges::minmax(shape.positions, {}, [](const Vector3& place) { return place.y(); });
+    const double hole = most.y() - least.y();
+    const double step = 2.0 * std::numbers::pi / n_corners;
+    for (Vector3& place : shape.positions) {
+        const double radius = hole + most.y() - place.y();
+        const bool is_cut = place.x() < 0.5 || place.x() > n_corners + 0.5;
+        const double angle = is_cut ? 0.0 : (place.x() - 0.5) * step;
+        const double distance = is_cut ? radius : radius / std::cos(0.5 * step);
+        place = {distance * std::cos(angle), distance * std::sin(angle), place.z()};
+    }
+    check_template(shape);
+    return shape;
 }
 
 CuboidTemplate make_star_template(std::string name, int n_legs) {

@@ -44,6 +44,16 @@ struct PolycubeCap {
     std::string name, const std::vector<SectionCell>& section,
     const std::vector<std::vector<SectionCell>>& branches);
 
+/// A section swept around the z axis, cut open: along x over `n_corners` + 1 sectors that follow a
+/// polygon, from the middle of one of its sides back to it, with the caps "x_low" and "x_high" at
+/// the same place there. y points towards the axis. Glued to itself it is a ring.
+///
+/// @param n_corners  at least 3
+/// @throws InputError, TopologyError  for fewer corners or no section; and as check_template
+[[nodiscard]] CuboidTemplate make_ring_template(std::string name,
+                                                const std::vector<SectionCell>& section,
+                                                int n_corners);
+
 /// One cuboid with a leg of one cuboid on its first `n_legs` sides of x_low, x_high, y_low, y_high,
 /// z_low, z_high; the caps have their names.
 ///

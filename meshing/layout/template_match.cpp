@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "iga/core/error.h"
@@ -282,10 +283,12 @@ class Search {
         match.nodes = image_;
         match.curves = path_;
         const auto motion = best_motion();
-        int n_used_edges = 0;
-        for (const auto& path : path_) n_used_edges += static_cast<int>(path.size()) - 1;
+        // A patch without sharp edges leaves all of them unused, whichever the template; then
+        // cuboids count, since there will be one more below each of their outer sides.
+        int n_unused_edges = patch_.nodes.empty() ? 2 * shape_.layout.n_cuboids() : wall_.n_edges;
+        for (const auto& path : path_) n_unused_edges -= static_cast<int>(path.size()) - 1;
         match.cost = options_.cuboid_cost * shape_.layout.n_cuboids() +
-                     options_.unused_edge_cost * (wall_.n_edges - n_used_edges) +
+                     options_.unused_edge_cost * n_unused_edges +
                      options_.misfit_cost * motion.second;
         add_turns(std::move(match), motion.first, 0);
     }
@@ -300,17 +303,18 @@ class Search {
             to.push_back(b);
         };
         for (std::size_t l = 0; l < patch_.loops.size(); ++l) {
-            Vector3 cap = Vector3::Zero();
-            for (const int node : wall_.loops[cap_[l]]) cap += shape_.positions[node];
-            Vector3 loop = Vector3::Zero();
-            for (const VertexHandle v : patch_.loops[l].vertices) loop += mesh_.point(v);
-            add(cap / static_cast<double>(wall_.loops[cap_[l]].size()),
-                loop / static_cast<double>(patch_.loops[l].vertices.size()));
+            add(mean(template_loop(l)), mean(patch_loop(l)));
         }
         for (std::size_t n = 0; n < patch_.nodes.size(); ++n) {
             add(shape_.positions[image_[n]], mesh_.point(patch_.nodes[n].vertex));
         }
-        if (patch_.nodes.empty()) add_centre(from, to);
+        if (patch_.nodes.empty()) {
+            add_centre(from, to);
+            for (std::size_t l = 0; l < patch_.loops.size(); ++l) {
+                from.push_back(from[l] + outward(template_loop(l)));
+                to.push_back(to[l] + outward(patch_loop(l)));
+            }
+        }
         const auto n = static_cast<Eigen::Index>(from.size());
         Eigen::Matrix3Xd source(3, n);
         Eigen::Matrix3Xd target(3, n);
@@ -327,6 +331,35 @@ class Search {
             spread += (target.col(i) - centre).norm();
         }
         return {motion, spread > 0.0 ? misfit / spread : 0.0};
+    }
+
+    [[nodiscard]] std::vector<Vector3> template_loop(std::size_t l) const {
+        std::vector<Vector3> points;
+        for (const int node : wall_.loops[cap_[l]]) points.push_back(shape_.positions[node]);
+        return points;
+    }
+
+    [[nodiscard]] std::vector<Vector3> patch_loop(std::size_t l) const {
+        std::vector<Vector3> points;
+        for (const VertexHandle v : patch_.loops[l].vertices) points.push_back(mesh_.point(v));
+        return points;
+    }
+
+    [[nodiscard]] static Vector3 mean(const std::vector<Vector3>& points) {
+        Vector3 sum = Vector3::Zero();
+        for (const Vector3& x : points) sum += x;
+        return sum / static_cast<double>(points.size());
+    }
+
+    // Normal of a loop with the wall on its left, out of the patch, as long as the radius of a
+    // circle of its area.
+    [[nodiscard]] static Vector3 outward(const std::vector<Vector3>& loop) {
+        const Vector3 centre = mean(loop);
+        Vector3 area = Vector3::Zero();
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            area -= 0.5 * (loop[k] - centre).cross(loop[(k + 1) % loop.size()] - centre);
+        }
+        return std::sqrt(area.norm() / std::numbers::pi) * area.stableNormalized();
     }
 
     // Of a patch without features: what tells its middle.
@@ -371,12 +404,8 @@ class Search {
     [[nodiscard]] double turn_misfit(std::size_t l, const std::vector<int>& nodes,
                                      const Eigen::Matrix4d& motion) const {
         const auto& vertices = patch_.loops[l].vertices;
-        Vector3 centre = Vector3::Zero();
-        for (const VertexHandle v : vertices) centre += mesh_.point(v);
-        centre /= static_cast<double>(vertices.size());
-        Vector3 cap = Vector3::Zero();
-        for (const int node : nodes) cap += shape_.positions[node];
-        cap /= static_cast<double>(nodes.size());
+        const Vector3 centre = mean(patch_loop(l));
+        const Vector3 cap = mean(template_loop(l));
         const std::vector<int> places =
             even_places(mesh_, vertices, static_cast<int>(nodes.size()));
         double misfit = 0.0;

@@ -222,7 +222,6 @@ class Decomposer {
     // Handles of a shell that keep off the curves there are, which get their kinds.
     void cut_handles(int shell) {
         if (shells_[shell].genus == 0) return;
-        // A torus is a patch of its own.
         const bool has_pants = is_cut_into_pants(shells_[shell]);
         report("looking for handle and tunnel loops", 0.0);
         const CutSurface whole(mesh_, faces_of_shell(shell),
@@ -253,7 +252,7 @@ class Decomposer {
             auto& points = result_.tunnels.emplace_back();
             for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
         }
-        if (!has_pants) return;
+        if (!has_pants && !options_.cuts_tori) return;
         std::vector<SurfaceCurve> curves;
         for (const HomologyLoop& loop : loops.handles) {
             SurfaceCurve& curve = curves.emplace_back();
@@ -353,13 +352,18 @@ class Decomposer {
         return faces;
     }
 
-    // Whether a piece is a sphere, disc, cylinder or torus by itself, that nothing cuts.
+    // Whether a piece is a sphere, disc, cylinder or torus by itself, that nothing cuts but the
+    // handle of a torus.
     [[nodiscard]] bool is_whole_shell(const CutSurface& piece) const {
         if (piece.euler_characteristic() < 0) return false;
         const auto loops = piece.boundary_loops();
-        return std::all_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
-            return result_.curves[side_of(piece, loop).curve].kind == PantsCurveKind::boundary;
+        std::set<int> cuts;
+        const bool has_cuts = std::any_of(loops.begin(), loops.end(), [&](const auto& loop) {
+            const int curve = side_of(piece, loop).curve;
+            cuts.insert(curve);
+            return result_.curves[curve].kind != PantsCurveKind::boundary;
         });
+        return !has_cuts || (loops.size() == 2 && cuts.size() == 1);
     }
 
     void cut_into_pants() {

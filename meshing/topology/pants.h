@@ -46,7 +46,7 @@ struct PantsCurve {
 };
 
 /// A piece of genus 0 with three boundary loops, or with up to six; or, if the surface has no
-/// pants, a sphere, disc, cylinder or torus.
+/// pants, a sphere, disc, cylinder or torus (cut open on demand).
 struct PantsPatch {
     /// Sides of curves that bound it; a handle may do so with both.
     std::vector<CurveSide> boundary;
@@ -69,6 +69,9 @@ struct PantsOptions {
     /// Distance from such a curve at which a detour costs double, by the diagonal of the surface's
     /// box.
     double loop_width = 0.02;
+    /// Cuts a torus without boundary along its handle too: what is left is a cylinder that meets
+    /// itself.
+    bool cuts_tori = false;
     /// Ends with the handles: there are no cycles and no patches.
     bool only_handles = false;
     /// No cuts are added to the loops; what lies between them must have genus 0 and may have any
@@ -110,7 +113,7 @@ struct PantsDecomposition {
 ///
 /// Number of pants = -chi, number of curves inside = 3 genus + boundaries - 3, both checked before
 /// pants are put together to larger patches (n-pants: pants, shirt, suit, spacesuit). A sphere,
-/// disc, cylinder or torus is one patch.
+/// disc, cylinder or torus is one patch, see PantsOptions::cuts_tori.
 ///
 /// The shells of a solid with cavities are cut one by one. Handles bound in the material: around a
 /// cavity they are the loops that bound outside of it, and tunnels bound in it.

@@ -163,3 +163,22 @@ TEST_CASE("cap patterns: rotations that lay quads on quads", "[layout]") {
         CHECK(nodes->at(low.loop[1]) == high.loop[(r + 5) % 6]);
     }
 }
+
+TEST_CASE("make_ring_template: closes on itself with as many sectors as corners, plus one",
+          "[layout]") {
+    const CuboidTemplate ring = make_ring_template("ring", {{0, 0}}, 4);
+    CHECK(ring.layout.n_cuboids() == 5);
+    const CapPattern low = cap_pattern(ring, 0);
+    // Caps lie on each other, so that the ring has no twist.
+    std::set<std::array<double, 3>> places;
+    for (int cap = 0; cap < 2; ++cap) {
+        for (const int node : cap_pattern(ring, cap).loop) {
+            const Vector3& x = ring.positions[node];
+            places.insert({std::round(1e9 * x.x()), std::round(1e9 * x.y()),
+                           std::round(1e9 * x.z())});
+        }
+    }
+    CHECK(places.size() == low.loop.size());
+    CHECK_THROWS_WITH(make_ring_template("flat", {{0, 0}}, 2),
+                      Catch::Contains("a ring has 3 corners or more, not 2"));
+}
