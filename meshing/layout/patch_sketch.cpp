@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "iga/core/error.h"
 
@@ -29,14 +30,31 @@ Vector3 middle_of(const SurfaceMesh& mesh, const std::vector<VertexHandle>& vert
     return mesh.point(vertices.back());
 }
 
-bool may_be_same(const std::string& first, const std::string& second) {
-    return first.empty() || second.empty() || first == second;
-}
+// Names of the nodes, or curves, of two sketches.
+struct Names {
+    template <typename Items>
+    Names(const Items& first_items, const Items& second_items) {
+        for (const auto& item : first_items) first.insert(item.name);
+        for (const auto& item : second_items) second.insert(item.name);
+    }
+    // A name that only one of the two sketches has does not count.
+    [[nodiscard]] bool may_be_same(const std::string& a, const std::string& b) const {
+        if (a == b) return true;
+        return a.empty() ? !first.contains(b) : b.empty() && !second.contains(a);
+    }
+
+    std::set<std::string> first;
+    std::set<std::string> second;
+};
 
 class Matcher {
   public:
     Matcher(const PatchSketch& first, const PatchSketch& second)
-        : first_(first), second_(second), is_taken_(second.nodes.size(), 0) {
+        : first_(first),
+          second_(second),
+          node_names_(first.nodes, second.nodes),
+          curve_names_(first.curves, second.curves),
+          is_taken_(second.nodes.size(), 0) {
         match_.nodes.assign(first.nodes.size(), -1);
         match_.curves.assign(first.curves.size(), -1);
         match_.is_reversed.assign(first.curves.size(), false);
@@ -129,7 +147,7 @@ class Matcher {
         const PatchSketch::Node& second = second_.nodes[b];
         const bool fits = first.loop == second.loop &&
                           first.curve_ends.size() == second.curve_ends.size() &&
-                          may_be_same(first.name, second.name) && is_taken_[b] == 0 &&
+                          node_names_.may_be_same(first.name, second.name) && is_taken_[b] == 0 &&
                           std::ranges::find(match_.nodes, b) == match_.nodes.end();
         if (!fits) return false;
         match_.nodes[a] = b;
@@ -171,7 +189,7 @@ class Matcher {
             return match_.curves[c] == d && match_.is_reversed[c] == is_reversed;
         }
         if (first_.curves[c].kind != second_.curves[d].kind ||
-            !may_be_same(first_.curves[c].name, second_.curves[d].name) ||
+            !curve_names_.may_be_same(first_.curves[c].name, second_.curves[d].name) ||
             std::ranges::find(match_.curves, d) != match_.curves.end()) {
             return false;
         }
@@ -193,6 +211,8 @@ class Matcher {
 
     const PatchSketch& first_;
     const PatchSketch& second_;
+    Names node_names_;
+    Names curve_names_;
     SketchMatch match_;
     std::vector<char> is_taken_;
     double misfit_ = 0.0;

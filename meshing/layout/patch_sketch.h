@@ -44,8 +44,9 @@ struct SketchMatch {
 
 /// Which nodes and curves of two members' patches are the same: loops lie on loops of the same
 /// number, curves on curves of the same kind and name, corners on corners of the same name, curves
-/// around each node come in the same order; names that one of the two lacks don't count. Of several
-/// such ways the one that lies nearest is taken, for each connected part by itself.
+/// around each node come in the same order; a nameless one may lie on one whose name the other
+/// sketch lacks. Of several such ways the one that lies nearest is taken, for each connected part
+/// by itself.
 ///
 /// @param first  with places carried over to the second member
 /// @throws TopologyError  if there is none: says what is there in other numbers, or which named
