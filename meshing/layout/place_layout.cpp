@@ -312,17 +312,21 @@ class Placer {
         ties_.push_back(std::move(tie));
     }
 
-    // Whether the solid fills more than half a turn around some part of a path.
+    // Whether the solid fills more than half a turn around a tenth of a path or more.
     [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
+        constexpr double part = 0.1;
+        double length = 0.0;
+        double reflex_length = 0.0;
         for (std::size_t k = 0; k + 1 < path.size(); ++k) {
             const HalfedgeHandle h = mesh_.find_halfedge(path[k], path[k + 1]);
             const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
             const Vector3 right =
                 face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
             const Vector3 along = mesh_.point(path[k + 1]) - mesh_.point(path[k]);
-            if (left.cross(right).dot(along) < 0.0) return true;
+            length += along.norm();
+            if (left.cross(right).dot(along) < 0.0) reflex_length += along.norm();
         }
-        return false;
+        return reflex_length > part * length;
     }
 
     // Arcs between nodes on features, the straightest first.
