@@ -1,6 +1,7 @@
 #include "meshing/layout/cuboid_template.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "iga/core/error.h"
@@ -174,8 +175,8 @@ TEST_CASE("make_ring_template: closes on itself with as many sectors as corners,
     for (int cap = 0; cap < 2; ++cap) {
         for (const int node : cap_pattern(ring, cap).loop) {
             const Vector3& x = ring.positions[node];
-            places.insert({std::round(1e9 * x.x()), std::round(1e9 * x.y()),
-                           std::round(1e9 * x.z())});
+            places.insert(
+                {std::round(1e9 * x.x()), std::round(1e9 * x.y()), std::round(1e9 * x.z())});
         }
     }
     CHECK(places.size() == low.loop.size());
