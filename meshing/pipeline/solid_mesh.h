@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "meshing/field/layout_field.h"
 #include "meshing/layout/cuboid_decomposition.h"
 #include "meshing/layout/layout_samples.h"
 #include "meshing/parameterization/layout_map.h"
@@ -16,7 +17,7 @@
 namespace couture::meshing {
 
 /// The stages from pants to a volume, in order.
-enum class SolidStage { layout, map, quads, volume };
+enum class SolidStage { layout, field, map, quads, volume };
 
 struct SolidMeshOptions {
     /// The last stage that is run.
@@ -31,6 +32,9 @@ struct SolidMeshOptions {
     std::vector<int> elements = {};
     /// Whether the map is optimised over the whole surface; else quads are mapped each on its own.
     bool is_aligned = true;
+    /// Weight of the angle to the cross field, next to the distortion, in the optimised map; 0: no
+    /// field is made for it.
+    double alignment = 0.0;
     /// Points of the surface for each element and direction that splines are fitted to; at least 2.
     int samples_per_element = 4;
     /// Its numbers of elements are not read.
@@ -44,6 +48,8 @@ struct SolidMesh {
     CuboidDecomposition cuboids;
     /// Elements of each sheet of cuboids, in the order of LayoutCells::sheets.
     std::vector<int> elements;
+    /// If it is the last stage, or the map is aligned with it.
+    std::optional<LayoutField> field;
     std::optional<LayoutMap> map;
     /// One cell for each spline element.
     std::optional<LayoutSamples> quads;
@@ -52,8 +58,8 @@ struct SolidMesh {
     std::optional<LayoutVolume> volume;
 };
 
-/// From a surface that is cut into pants to trivariate splines: cuboids, aligned global map, quads
-/// whose nodes have moved to better places, splines.
+/// From a surface that is cut into pants to trivariate splines: cuboids, cross field, aligned map,
+/// quads whose nodes have moved to better places, splines.
 ///
 /// @param opened, features, pants, caps, library  as decompose_into_cuboids
 /// @throws InputError     for options out of range, and as the stages
