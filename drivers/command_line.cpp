@@ -119,8 +119,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
            "deck (.toml), or a spline file (.xml, .mesh, .txt, .inp, .h5)")
         ->required();
     sub->add_option("--stage", mesh->stage,
-                    "the last stage: surface, features, loops, pants (default), layout, map, "
-                    "quads, volume, hexes; of splines: volume (from surfaces), hexes");
+                    "the last stage: surface, features, loops, pants (default), layout, "
+                    "field, map, quads, volume, hexes; of splines: volume (from surfaces), hexes");
     sub->add_option("--points", mesh->n_points,
                     "points per direction of the hexahedra in each patch (default: as many as "
                     "control points)");

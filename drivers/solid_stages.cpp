@@ -1,11 +1,16 @@
 #include "drivers/solid_stages.h"
 
+#include <algorithm>
+#include <numbers>
+#include <string>
+
 #include "iga/topology/space.h"
 #include "io/obj_surface.h"
 #include "io/picture.h"
 #include "io/scene.h"
 #include "io/spline_file.h"
 #include "io/surface_writer.h"
+#include "meshing/field/face_frames.h"
 #include "meshing/parameterization/sample_grid.h"
 
 namespace couture::drivers {
@@ -138,13 +143,93 @@ std::vector<io::SurfaceArray> map_arrays(const SolidMesh& solid) {
     return {{"u", u}, {"v", v}};
 }
 
+// The four directions of each face's cross.
+std::vector<io::SurfaceArray> cross_arrays(const SolidMesh& solid) {
+    const SurfaceMesh& mesh = solid.cuboids.mesh;
+    const FaceFrames frames(mesh);
+    std::vector<io::SurfaceArray> arrays;
+    for (int k = 0; k < 4; ++k) {
+        MatrixX directions(static_cast<Eigen::Index>(mesh.n_faces()), 3);
+        for (const FaceHandle face : mesh.faces()) {
+            const double angle = solid.field->field.angles[face.idx()] + 0.5 * std::numbers::pi * k;
+            directions.row(face.idx()) = frames.direction(face, angle).transpose();
+        }
+        arrays.push_back({"direction_" + std::to_string(k), std::move(directions)});
+    }
+    return arrays;
+}
+
+io::SurfaceArray index_array(const SolidMesh& solid) {
+    MatrixX index = MatrixX::Zero(static_cast<Eigen::Index>(solid.cuboids.mesh.n_vertices()), 1);
+    for (const Singularity& s : solid.field->topology.singularities) index(s.vertex, 0) = s.index;
+    return {"index", std::move(index)};
+}
+
+// An octahedron.
+io::SurfacePiece marker(const Vector3& center, double radius, const io::Color& color) {
+    io::SurfacePiece piece;
+    piece.vertices.resize(6, 3);
+    for (int k = 0; k < 6; ++k) {
+        piece.vertices.row(k) =
+            (center + (k % 2 == 0 ? radius : -radius) * Vector3::Unit(k / 2)).transpose();
+    }
+    piece.triangles.resize(8, 3);
+    piece.triangles << 0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5;
+    piece.color = color;
+    return piece;
+}
+
+// Crosses, so far apart that each can be seen, on the plain surface; singularities of positive
+// index red, others blue.
+io::Scene field_scene(const SolidMesh& solid) {
+    const SurfaceMesh& mesh = solid.cuboids.mesh;
+    io::Scene scene;
+    const TriangleSoup soup = to_soup(mesh);
+    io::SurfacePiece piece;
+    piece.vertices = rows_of(soup.points);
+    piece.triangles.resize(static_cast<Eigen::Index>(soup.triangles.size()), 3);
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+        const auto& [a, b, c] = soup.triangles[t];
+        piece.triangles.row(static_cast<Eigen::Index>(t)) << a, b, c;
+    }
+    scene.surfaces.push_back(std::move(piece));
+    const double spacing = bounding_box_diagonal(mesh) / 50.0;
+    const FaceFrames frames(mesh);
+    std::vector<Vector3> centers;
+    for (const FaceHandle face : mesh.faces()) {
+        const Vector3 center = mesh.calc_face_centroid(face);
+        if (std::ranges::any_of(
+                centers, [&](const Vector3& other) { return (other - center).norm() < spacing; })) {
+            continue;
+        }
+        centers.push_back(center);
+        constexpr double lift = 0.05;
+        const Vector3 middle = center + lift * spacing * face_normal(mesh, face);
+        for (int k = 0; k < 2; ++k) {
+            const double angle = solid.field->field.angles[face.idx()] + 0.5 * std::numbers::pi * k;
+            const Vector3 arm = 0.45 * spacing * frames.direction(face, angle);
+            scene.curves.push_back({.points = rows_of({middle - arm, middle + arm}),
+                                    .is_closed = false,
+                                    .color = {0.12, 0.14, 0.17},
+                                    .width = 1.5});
+        }
+    }
+    for (const auto& [vertex, index] : solid.field->topology.singularities) {
+        const io::Color color =
+            index > 0 ? io::Color{0.84, 0.15, 0.16} : io::Color{0.10, 0.35, 0.80};
+        scene.surfaces.push_back(marker(mesh.point(VertexHandle(vertex)), 0.5 * spacing, color));
+    }
+    return scene;
+}
+
 }  // namespace
 
 std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& solid,
                                         SolidStage stage, bool png, const std::string& provenance) {
+    if (stage == SolidStage::field && !solid.field) return {};
     std::vector<fs::path> files;
     io::Scene scene;
-    if (stage == SolidStage::layout || stage == SolidStage::map) {
+    if (stage <= SolidStage::map) {
         std::vector<io::SurfaceArray> on_triangles{
             {"quad", column(solid.cuboids.surface.quad_of_face)}};
         if (stage == SolidStage::map) {
@@ -152,10 +237,17 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
                 on_triangles.push_back(std::move(array));
             }
         }
+        std::vector<io::SurfaceArray> on_points;
+        if (stage == SolidStage::field) {
+            on_points.push_back(index_array(solid));
+            for (io::SurfaceArray& array : cross_arrays(solid)) {
+                on_triangles.push_back(std::move(array));
+            }
+        }
         files.push_back(with_extension(stem, ".vtp"));
-        io::write_vtp(files.back(), to_soup(solid.cuboids.mesh), {}, on_triangles,
+        io::write_vtp(files.back(), to_soup(solid.cuboids.mesh), on_points, on_triangles,
                       arc_lines(solid.cuboids), provenance);
-        scene = layout_scene(solid.cuboids);
+        scene = stage == SolidStage::field ? field_scene(solid) : layout_scene(solid.cuboids);
     } else if (stage == SolidStage::quads) {
         const QuadMesh quads = to_quad_mesh(*solid.quads);
         files.push_back(with_extension(stem, ".vtp"));

@@ -121,8 +121,8 @@ void read_open(Section& section, CapSelection& open) {
 void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     meshing::PantsOptions& pants = deck.pants;
     deck.stage = section
-                     .choice("stage", {"surface", "features", "loops", "pants", "layout", "map",
-                                       "quads", "volume"})
+                     .choice("stage", {"surface", "features", "loops", "pants", "layout", "field",
+                                       "map", "quads", "volume"})
                      .value_or(deck.stage);
     deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
     if (deck.edge_length > 0.0 && deck.part.empty()) {
@@ -180,6 +180,13 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     solid.is_aligned =
         section.choice("parameterization", {"aligned", "harmonic"}).value_or("aligned") ==
         "aligned";
+    solid.alignment = section.number("alignment", dimensions::none, {.low = 0.0, .high = 1e6})
+                          .value_or(solid.alignment);
+    if (solid.alignment > 0.0 && !solid.is_aligned) {
+        section.mistake("alignment",
+                        "'alignment' draws the optimised map to the cross field; it has no place "
+                        "beside parameterization = \"harmonic\"");
+    }
     read_existing_file(section, "templates", folder, deck.templates);
     read_existing_file(section, "layout", folder, deck.layout);
     read_existing_file(section, "like", folder, deck.like);

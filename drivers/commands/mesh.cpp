@@ -256,6 +256,14 @@ void print_solid(const meshing::SolidMesh& solid) {
     fmt::print("layout    {} cuboids, {} quads, {} arcs on the surface{}{}\n",
                solid.cuboids.volume.n_cuboids(), layout.n_quads(), layout.n_arcs(),
                templates.empty() ? "" : "; templates ", fmt::join(templates, ", "));
+    if (solid.field) {
+        const auto& [topology, field, report] = *solid.field;
+        fmt::print(
+            "field     {} singularities; sum of squares of connection angles {:.4g} by topology "
+            "alone, {:.4g} along features; off features by up to {:.2g} rad\n",
+            topology.singularities.size(), report.topological_energy, report.energy,
+            report.feature_angle);
+    }
     if (solid.map) {
         const auto& report = solid.map->report;
         fmt::print("map       energy {:.4g} to {:.4g} in {} steps, {} triangles flipped\n",

@@ -205,6 +205,22 @@ MatrixX BlockMatrix::operator*(const MatrixX& x) const {
     return y;
 }
 
+BlockMatrix to_symmetric_blocks(const SparseMatrix& matrix) {
+    BlockMatrix blocks;
+    blocks.n_rows = static_cast<int>(matrix.cols());
+    blocks.row_begin.push_back(0);
+    for (int column = 0; column < blocks.n_rows; ++column) {
+        // Column of the lower triangle, row of the upper one.
+        for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+            if (entry.row() < column) continue;
+            blocks.columns.push_back(static_cast<int>(entry.row()));
+            blocks.values.push_back(entry.value());
+        }
+        blocks.row_begin.push_back(blocks.n_blocks());
+    }
+    return blocks;
+}
+
 SparseMatrix to_scalar(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
                        bool triangle_only, std::vector<int>& kept) {
     const int size = matrix.block_size;

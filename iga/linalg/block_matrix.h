@@ -31,6 +31,9 @@ struct BlockMatrix {
     [[nodiscard]] const double* find(int row, int column) const;
 };
 
+/// A symmetric scalar matrix as one of blocks of size 1.
+[[nodiscard]] BlockMatrix to_symmetric_blocks(const SparseMatrix& matrix);
+
 /// All stored and implied entries as a scalar matrix without the rows and columns that are fixed
 /// (an empty list keeps all). `triangle_only` keeps the lower triangle of a symmetric matrix.
 ///

@@ -20,6 +20,9 @@ void check_options(const SolidMeshOptions& options) {
     if (options.min_elements < 1) {
         throw InputError("mesh: {} elements at least; it must be 1 or more", options.min_elements);
     }
+    if (!(options.alignment >= 0.0) || !std::isfinite(options.alignment)) {
+        throw InputError("mesh: alignment {}; it must not be negative", options.alignment);
+    }
     if (options.samples_per_element < 2) {
         throw InputError("mesh: {} samples per element; splines need 2 or more",
                          options.samples_per_element);
@@ -99,12 +102,20 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
     }
     if (options.last == SolidStage::layout) return solid;
 
-    say("mapping the surface");
     split_layout_chords(mesh, surface);
     LayoutMapOptions map_options;
     map_options.is_optimised = options.is_aligned;
     // Nodes move on from here.
     map_options.tolerance = 1e-4;
+    if (options.last == SolidStage::field || options.alignment > 0.0) {
+        say("making the cross field");
+        solid.field = make_layout_field(mesh, surface);
+        map_options.alignment_weight = options.alignment;
+        map_options.directions = FaceDirections{solid.field->field.angles};
+    }
+    if (options.last == SolidStage::field) return solid;
+
+    say("mapping the surface");
     solid.map = make_layout_map(mesh, surface, cells_of_surface(surface.layout, cells, elements),
                                 map_options);
     if (options.last == SolidStage::map) return solid;

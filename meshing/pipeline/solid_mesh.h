@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "meshing/field/layout_field.h"
 #include "meshing/layout/cuboid_decomposition.h"
 #include "meshing/layout/layout_samples.h"
 #include "meshing/parameterization/layout_map.h"
@@ -18,7 +19,7 @@
 namespace couture::meshing {
 
 /// The stages from cuboids to a volume, in order.
-enum class SolidStage { layout, map, quads, volume };
+enum class SolidStage { layout, field, map, quads, volume };
 
 struct SolidMeshOptions {
     /// The last stage that is run.
@@ -32,6 +33,9 @@ struct SolidMeshOptions {
     std::optional<NamedFaces> faces = {};
     /// Whether the map is optimised over the whole surface; else quads are mapped each on its own.
     bool is_aligned = true;
+    /// Weight of the angle to the cross field, next to the distortion, in the optimised map; 0: no
+    /// field is made for it.
+    double alignment = 0.0;
     /// Points of the surface for each element and direction that splines are fitted to; at least 2.
     int samples_per_element = 4;
     /// Its numbers of elements are not read.
@@ -44,6 +48,8 @@ struct SolidMeshOptions {
 struct SolidMesh {
     /// With the elements of its sheets in its record.
     CuboidDecomposition cuboids;
+    /// If it is the last stage, or the map is aligned with it.
+    std::optional<LayoutField> field;
     std::optional<LayoutMap> map;
     /// One cell for each spline element.
     std::optional<LayoutSamples> quads;
@@ -53,8 +59,8 @@ struct SolidMesh {
     std::optional<VolumeDistance> distance;
 };
 
-/// From a solid's cuboids to trivariate splines: aligned global map, quads whose nodes have moved
-/// to better places, splines.
+/// From a solid's cuboids to trivariate splines: cross field, aligned global map, quads whose nodes
+/// have moved to better places, splines.
 ///
 /// @param cuboids  of decompose_into_cuboids, repeat_cuboids or place_layout; numbers of elements
 ///                 and names of sides that its record has are kept
