@@ -36,10 +36,17 @@ void turn_to_arcs(const SurfaceMesh& mesh, DirectionField& field, std::vector<Ar
     for (ArcOffset& arc : offsets) arc.offset -= mean(arc.face.idx());
 }
 
-std::vector<bool> feature_edges(const SurfaceMesh& mesh) {
+// Tagged ones and those of feature arcs.
+std::vector<bool> feature_edges(const SurfaceMesh& mesh, const EmbeddedLayout& embedding) {
     std::vector<bool> is_feature(mesh.n_edges());
     for (const EdgeHandle edge : mesh.edges()) {
         is_feature[edge.idx()] = mesh.data(edge).feature >= 0;
+    }
+    for (int a = 0; a < embedding.layout.n_arcs(); ++a) {
+        const auto& path = embedding.arcs[a];
+        for (std::size_t i = 0; embedding.is_feature_arc[a] && i + 1 < path.size(); ++i) {
+            is_feature[mesh.edge_handle(mesh.find_halfedge(path[i], path[i + 1])).idx()] = true;
+        }
     }
     return is_feature;
 }
@@ -69,7 +76,7 @@ LayoutField make_layout_field(const SurfaceMesh& mesh, const EmbeddedLayout& emb
     for (AngleTarget& target : targets) target.offset = 0.0;
     std::vector<char> is_held(mesh.n_faces(), 0);
     for (const AngleTarget& target : targets) is_held[target.face.idx()] = 1;
-    const auto inside = feature_targets(mesh, result.field, feature_edges(mesh));
+    const auto inside = feature_targets(mesh, result.field, feature_edges(mesh, embedding));
     for (const AngleTarget& target : inside) {
         if (is_held[target.face.idx()] == 0) targets.push_back(target);
     }
@@ -78,7 +85,8 @@ LayoutField make_layout_field(const SurfaceMesh& mesh, const EmbeddedLayout& emb
     result.field = align_field(mesh, std::move(result.field), targets);
 
     result.report.energy = sum_of_squares(field_curvature(mesh, result.field));
-    for (const AngleTarget& edge : feature_targets(mesh, result.field, feature_edges(mesh))) {
+    for (const AngleTarget& edge :
+         feature_targets(mesh, result.field, feature_edges(mesh, embedding))) {
         result.report.feature_angle = std::max(result.report.feature_angle, std::abs(edge.offset));
     }
     return result;
