@@ -358,12 +358,13 @@ class Decomposer {
         if (piece.euler_characteristic() < 0) return false;
         const auto loops = piece.boundary_loops();
         std::set<int> cuts;
-        const bool has_cuts = std::any_of(loops.begin(), loops.end(), [&](const auto& loop) {
+        for (const auto& loop : loops) {
             const int curve = side_of(piece, loop).curve;
-            cuts.insert(curve);
-            return result_.curves[curve].kind != PantsCurveKind::boundary;
-        });
-        return !has_cuts || (loops.size() == 2 && cuts.size() == 1);
+            if (result_.curves[curve].kind != PantsCurveKind::boundary) cuts.insert(curve);
+        }
+        const bool is_cut_torus = loops.size() == 2 && cuts.size() == 1 &&
+                                  side_of(piece, loops[0]).curve == side_of(piece, loops[1]).curve;
+        return cuts.empty() || is_cut_torus;
     }
 
     void cut_into_pants() {
