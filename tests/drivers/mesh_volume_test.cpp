@@ -1,7 +1,7 @@
 // From triangles to certified volumes.
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <regex>
+#include <nlohmann/json.hpp>
 
 #include "tests/data_folder.h"
 #include "tests/drivers/run_program.h"
@@ -18,15 +18,14 @@ constexpr double least_scaled_jacobian = 0.2;
 constexpr double least_mean = 0.8;
 
 void check_volume(const fs::path& deck, const fs::path& folder) {
-    const ProgramResult result = run_couture("mesh '" + deck.string() + "'", folder);
+    const ProgramResult result = run_couture("mesh --json '" + deck.string() + "'", folder);
     INFO(result.errors);
     REQUIRE(result.exit_code == 0);
-    INFO(result.output);
-    const std::regex quality("det J valid, scaled Jacobian from ([-0-9.]+), mean ([-0-9.]+);");
-    std::smatch found;
-    REQUIRE(std::regex_search(result.output, found, quality));
-    CHECK(std::stod(found[1]) >= least_scaled_jacobian);
-    CHECK(std::stod(found[2]) >= least_mean);
+    const auto volume = nlohmann::json::parse(result.output).at("volume");
+    CAPTURE(volume.dump());
+    CHECK(volume.at("certificate") == "valid");
+    CHECK(volume.at("min_scaled_jacobian") >= least_scaled_jacobian);
+    CHECK(volume.at("mean_scaled_jacobian") >= least_mean);
 }
 
 }  // namespace
