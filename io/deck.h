@@ -37,6 +37,12 @@ struct Discretization {
     std::string source;
 };
 
+/// How a deformed body is meshed again.
+enum class Mesher {
+    slide,   ///< control points move, those of the boundary within their faces and curves
+    surface  ///< the boundary as triangles, mapped to the layout anew and filled
+};
+
 /// When a body at finite strain is meshed again.
 struct RemeshingOptions {
     std::string source;
@@ -47,6 +53,7 @@ struct RemeshingOptions {
     std::optional<double> scaled_jacobian;
     std::optional<double> angle_deviation;
     bool on_failure = false;
+    Mesher mesher = Mesher::slide;
     iga::Transfer transfer = iga::Transfer::displacement;
     int max_remeshings = 20;
 };

@@ -155,6 +155,9 @@ void read_remeshing(Section& section, Deck& deck) {
                                              {.low = 0.0, .high = 1.0, .is_open = true});
     options.angle_deviation = section.number("angle_deviation", dimensions::none, positive);
     options.on_failure = section.flag("on_failure").value_or(false);
+    if (section.choice("mesher", {"slide", "surface"}).value_or("slide") == "surface") {
+        options.mesher = Mesher::surface;
+    }
     if (section.choice("transfer", {"displacement", "gradient"}).value_or("displacement") ==
         "gradient") {
         options.transfer = iga::Transfer::gradient;

@@ -22,7 +22,16 @@ struct CellSamples {
     int source = -1;
 };
 
-std::vector<int> elements_of_edges(const LayoutCells& cells, const LayoutVolumeOptions& options) {
+std::vector<iga::KnotVector> knots_of_edges(const LayoutCells& cells,
+                                            const LayoutVolumeOptions& options) {
+    if (!options.knots.empty()) {
+        if (options.knots.size() != cells.edges.size()) {
+            throw InputError(
+                "make_layout_volume: {} knot vectors; give none, or one for each of the {} edges",
+                options.knots.size(), cells.edges.size());
+        }
+        return options.knots;
+    }
     const auto& given = options.n_elements;
     if (given.size() != 1 && given.size() != static_cast<std::size_t>(cells.n_sheets())) {
         throw InputError(
@@ -35,8 +44,11 @@ std::vector<int> elements_of_edges(const LayoutCells& cells, const LayoutVolumeO
             throw InputError("make_layout_volume: {} elements in a sheet; must be at least 1", n);
         }
     }
-    std::vector<int> result;
-    for (const int sheet : cells.sheets) result.push_back(given[given.size() == 1 ? 0 : sheet]);
+    std::vector<iga::KnotVector> result;
+    for (const int sheet : cells.sheets) {
+        result.push_back(
+            iga::KnotVector::uniform(options.degree, given[given.size() == 1 ? 0 : sheet]));
+    }
     return result;
 }
 
@@ -54,7 +66,7 @@ void check_counts(const LayoutSamples& samples) {
 
 // The arcs' samples by the layout's edges; arcs and edges both run from the smaller node.
 std::vector<CellSamples> samples_of_edges(const LayoutCells& cells, const LayoutSamples& samples,
-                                          const std::vector<int>& n_elements) {
+                                          const std::vector<iga::KnotVector>& knots) {
     std::vector<CellSamples> result(cells.edges.size());
     const QuadLayout& layout = samples.layout;
     for (int arc = 0; arc < layout.n_arcs(); ++arc) {
@@ -74,11 +86,11 @@ std::vector<CellSamples> samples_of_edges(const LayoutCells& cells, const Layout
                 "than cells, all finite",
                 arc, n, points.cols());
         }
-        if (n < 2 * n_elements[edge]) {
+        if (n < 2 * knots[edge].n_elements()) {
             throw InputError(
                 "make_layout_volume: arc {} from node {} to {} has {} cells for {} spline "
                 "elements; there must be 2 or more each: sample finer, or take fewer elements",
-                arc, from, to, n, n_elements[edge]);
+                arc, from, to, n, knots[edge].n_elements());
         }
         result[edge] = {points, {n + 1, 1}, arc};
     }
@@ -185,18 +197,17 @@ class Distances {
 LayoutNets fit_boundary(const VolumetricLayout& layout, const LayoutCells& cells,
                         const LayoutSamples& samples, const LayoutVolumeOptions& options,
                         LayoutVolumeReport& report) {
-    const std::vector<int> n_elements = elements_of_edges(cells, options);
-    check_counts(samples);
-    const auto edges = samples_of_edges(cells, samples, n_elements);
-    const auto faces = samples_of_faces(cells, samples, edges);
     LayoutNets nets;
+    nets.knots = knots_of_edges(cells, options);
+    check_counts(samples);
+    const auto edges = samples_of_edges(cells, samples, nets.knots);
+    const auto faces = samples_of_faces(cells, samples, edges);
     nets.nodes = MatrixX::Zero(layout.n_nodes, 3);
     nets.edges.resize(cells.edges.size());
     nets.faces.resize(cells.faces.size());
     std::vector<bool> is_given(layout.n_nodes, false);
     Distances distances(report);
     for (std::size_t e = 0; e < cells.edges.size(); ++e) {
-        nets.knots.push_back(iga::KnotVector::uniform(options.degree, n_elements[e]));
         if (edges[e].source < 0) continue;
         SplineFit fit = fit_curve(nets.knots[e], edges[e].points, options.fit);
         distances.add(fit, edges[e], true);

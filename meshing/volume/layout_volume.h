@@ -13,6 +13,9 @@ struct LayoutVolumeOptions {
     /// Spline elements of each sheet of the volume (see LayoutCells::sheets), or one number for
     /// all.
     std::vector<int> n_elements{4};
+    /// Instead of degree and numbers of elements: for each edge of LayoutCells its open knot vector
+    /// in its direction; those of a sheet conform.
+    std::vector<iga::KnotVector> knots = {};
     FitOptions fit = {};
     ParameterizationOptions parameterization = {};
     /// Afterwards the boundary slides too (see optimize_volume); it stays within the tolerance
@@ -42,8 +45,8 @@ struct LayoutVolume {
 /// Corners interpolate the nodes, then each arc is fitted once, then each face once with its
 /// border fixed; nodes inside are placed with straight cuboids (see place_inner_nodes), inner edges
 /// are straight, inner faces and volumes Coons patches; then all control points that are not on the
-/// boundary move (see parameterize_volume). All edges of a sheet have one uniform open knot vector:
-/// neighbours share control points exactly.
+/// boundary move (see parameterize_volume). All edges of a sheet have one open knot vector, uniform
+/// unless given: neighbours share control points exactly.
 ///
 /// Whether det J is certified, and the quality: see the report.
 ///

@@ -125,6 +125,8 @@ TEST_CASE("hyperelastic deck: what only linear ones have", "[drivers]") {
                         "have"));
     CHECK_THAT(error_of(good_deck + "[[temperature]]\nchange = 1.0\n"),
                Contains("[[temperature]]: hyperelastic materials have no thermal strain"));
+    CHECK_THAT(error_of(replaced("at = [0.5, 1.5]", "at = [0.5]\nmesher = \"surfaces\"")),
+               Contains("mesher") && Contains("'surface'"));
     CHECK_THAT(error_of(good_deck + "[analysis]\nkinematics = \"plane_stress\"\n"),
                Contains("rubber.toml:32: kinematics 'plane_stress' is for linear materials only"));
 }
