@@ -338,3 +338,54 @@ tolerance = 1e-9
         check_equal(folder, "a", "b");
     }
 }
+
+TEST_CASE("couture solve: from triangles to a run that is meshed again from its surface",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    const auto meshed = run_couture(
+        "mesh half_seal --open caps --stage volume --degree 1 --element-size 8", folder.path());
+    CAPTURE(meshed.output, meshed.errors);
+    REQUIRE(meshed.exit_code == 0);
+    const auto deck = [](const std::string& geometry, const std::string& cuts) {
+        return "[geometry]\n" + geometry + R"(
+[material.rubber]
+model = "neo_hookean"
+shear_modulus = 3
+bulk_modulus = 20
+[[fixed]]
+on = )" + cuts +
+               R"(
+[[displacement]]
+on = "cap"
+value = [-20, 0, 0]
+[stepping]
+first_step = 0.1
+largest_step = 0.1
+[remeshing]
+at = [0.5]
+mesher = "surface"
+)";
+    };
+    write_deck(folder, deck("file = \"out/half_seal/half_seal_volume.xml\"",
+                            "[\"cut_low\", \"cut_high\"]"));
+    const auto result = run_couture("solve block.toml --out a", folder.path());
+    CAPTURE(result.output, result.errors);
+    REQUIRE(result.exit_code == 0);
+    CHECK_THAT(result.errors, Contains("new mesh: from ") && Contains("meshed again at t = 0.5"));
+    const Json summary = summary_of(folder, "a");
+    CHECK(summary["remeshings"] == 1);
+    const Json report = summary["history"][5]["remeshing"];
+    CHECK(report["energy"]["after"].get<double>() ==
+          Approx(report["energy"]["before"].get<double>()).epsilon(0.02));
+    CHECK(report["volume"]["after"].get<double>() ==
+          Approx(report["volume"]["before"].get<double>()).epsilon(0.01));
+    // The sets are those of the first mesh.
+    CHECK(report["reactions_after"].size() == 3);
+    CHECK(report["reactions_before"].size() == 3);
+
+    write_deck(folder, deck("part = \"half_seal\"", "\"cuts\""));
+    const auto exact = run_couture("solve block.toml --out b", folder.path());
+    CHECK(exact.exit_code == 2);
+    CHECK_THAT(exact.errors, Contains("mesher = \"surface\"") && Contains("has weights") &&
+                                 Contains("mesher = \"slide\""));
+}

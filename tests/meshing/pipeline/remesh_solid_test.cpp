@@ -94,8 +94,7 @@ TEST_CASE("remesh_solid: a deformed body in new splines of the same signature", 
     for (const iga::Volume& patch : again.volume.patches) {
         CHECK(iga::certify(patch).validity == iga::Validity::valid);
     }
-    CHECK(iga::element_quality(again.volume).min_scaled_jacobian >
-          iga::element_quality(body).min_scaled_jacobian);
+    CHECK(iga::element_quality(again.volume).min_scaled_jacobian > 0.85);
     CHECK(std::abs(again.volume_change) < 0.01);
     CHECK(again.distance.surface < 0.01);
     CHECK(again.distance.features < 0.01);
