@@ -33,24 +33,24 @@ Json to_json(const meshing::PlacedLayout& mesh) {
     const double volume = iga::volume(elements);
     const MatrixX box = elements.bounding_box();
     const iga::QualitySummary<3> quality = iga::element_quality(elements);
-    return {{"hexahedra", mesh.layout.n_cuboids()},
-            {"points", mesh.layout.n_nodes},
-            {"boundary_quads", boundary.n_quads()},
-            {"boundary_euler_characteristic", boundary.euler_characteristic()},
-            {"bounding_box",
-             {{"low", {box(0, 0), box(1, 0), box(2, 0)}},
-              {"high", {box(0, 1), box(1, 1), box(2, 1)}}}},
-            {"volume", volume},
-            {"mean_edge", std::cbrt(volume / mesh.layout.n_cuboids())},
-            {"min_scaled_jacobian", quality.min_scaled_jacobian},
-            {"worst_hexahedron", quality.worst_patch},
-            {"min_scaled_jacobian_at_corners", quality.min_at_corners},
-            {"min_scaled_jacobian_at_gauss_points", quality.min_at_gauss_points},
-            {"mean_scaled_jacobian", quality.mean_scaled_jacobian},
-            {"max_shape_ratio", finite_or_null(quality.max_shape_ratio)},
-            {"mean_shape_ratio", finite_or_null(quality.mean_shape_ratio)},
-            {"max_angle_deviation", quality.max_angle_deviation},
-            {"mean_angle_deviation", quality.mean_angle_deviation}};
+    return {
+        {"hexahedra", mesh.layout.n_cuboids()},
+        {"points", mesh.layout.n_nodes},
+        {"boundary_quads", boundary.n_quads()},
+        {"boundary_euler_characteristic", boundary.euler_characteristic()},
+        {"bounding_box",
+         {{"low", {box(0, 0), box(1, 0), box(2, 0)}}, {"high", {box(0, 1), box(1, 1), box(2, 1)}}}},
+        {"volume", volume},
+        {"mean_edge", std::cbrt(volume / mesh.layout.n_cuboids())},
+        {"min_scaled_jacobian", quality.min_scaled_jacobian},
+        {"worst_hexahedron", quality.worst_patch},
+        {"min_scaled_jacobian_at_corners", quality.min_at_corners},
+        {"min_scaled_jacobian_at_gauss_points", quality.min_at_gauss_points},
+        {"mean_scaled_jacobian", quality.mean_scaled_jacobian},
+        {"max_shape_ratio", finite_or_null(quality.max_shape_ratio)},
+        {"mean_shape_ratio", finite_or_null(quality.mean_shape_ratio)},
+        {"max_angle_deviation", quality.max_angle_deviation},
+        {"mean_angle_deviation", quality.mean_angle_deviation}};
 }
 
 /// "1.73205"; what JSON has no number for is infinite.
