@@ -27,6 +27,9 @@ constexpr double reach = 0.7;
 constexpr double sharp_angle = std::numbers::pi / 9.0;
 // An arc follows features if that is at most so many times as long as the straight line.
 constexpr double longest_detour = 1.8;
+// Interior angle of a wall at which two cuboids have corners as good as one has: beyond it
+// sin(angle / 2), their scaled Jacobian, is larger than sin(angle).
+constexpr double widest_corner = 2.0 * std::numbers::pi / 3.0;
 // Of the box's diagonal: edges of the surface that arcs can run along.
 constexpr double edge_part = 1.0 / 60.0;
 // What it costs to be off an arc's straight line by its length, relative to the length.
@@ -325,7 +328,7 @@ class Placer {
         LayoutTie tie{.vertices = path.vertices,
                       .nodes = {from, to},
                       .is_feature = is_on_feature,
-                      .is_reflex = is_on_feature && is_reflex(path.vertices),
+                      .is_reflex = is_on_feature && is_blunt(path.vertices),
                       .name = fmt::format("arc of nodes {} and {}", from, to)};
         for (std::size_t k = 0; k + 1 < path.vertices.size(); ++k) {
             mesh_
@@ -338,21 +341,29 @@ class Placer {
         ties_.push_back(std::move(tie));
     }
 
-    // Whether the solid fills more than half a turn around a tenth of a path or more.
-    [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
+    // Whether the solid fills more than the widest corner of one cuboid around a tenth of a path or
+    // more.
+    [[nodiscard]] bool is_blunt(const std::vector<VertexHandle>& path) const {
         constexpr double part = 0.1;
         double length = 0.0;
-        double reflex_length = 0.0;
+        double blunt_length = 0.0;
         for (std::size_t k = 0; k + 1 < path.size(); ++k) {
             const HalfedgeHandle h = mesh_.find_halfedge(path[k], path[k + 1]);
-            const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
-            const Vector3 right =
-                face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
-            const Vector3 along = mesh_.point(path[k + 1]) - mesh_.point(path[k]);
-            length += along.norm();
-            if (left.cross(right).dot(along) < 0.0) reflex_length += along.norm();
+            const double l = edge_length(mesh_, mesh_.edge_handle(h));
+            length += l;
+            if (interior_angle(h) > widest_corner) blunt_length += l;
         }
-        return reflex_length > part * length;
+        return blunt_length > part * length;
+    }
+
+    [[nodiscard]] double interior_angle(HalfedgeHandle h) const {
+        const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
+        const Vector3 right =
+            face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
+        const Vector3 along =
+            mesh_.point(mesh_.to_vertex_handle(h)) - mesh_.point(mesh_.from_vertex_handle(h));
+        return std::numbers::pi -
+               std::atan2(left.cross(right).dot(along.normalized()), left.dot(right));
     }
 
     // Arcs between nodes on features, the straightest first.
