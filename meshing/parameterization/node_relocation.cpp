@@ -110,44 +110,114 @@ class CellEnergy {
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
 
-    /// @param takes_lengths_only  the sum of squared lengths, which no inverted cell disturbs
-    void assemble(const SurfaceSlide::State& state, bool takes_lengths_only,
+    /// @param is_free  points that may move
+    void assemble(const SurfaceSlide::State& state, const std::vector<bool>& is_free,
                   NewtonSystem& system) const {
         system.set_zero();
         const double weight = 1.0 / static_cast<double>(corners_.size());
         for (std::size_t c = 0; c < corners_.size(); ++c) {
-            const CellCorner& corner = corners_[c];
-            const Matrix<3, 2> plane = tangent_plane(state, corner);
-            const Matrix<2> F = gradient(state, corner);
-            const Matrix<3, 2> edges = scaled_edges(corner);
-            const auto pulled_back = [&](const Matrix<2>& M) {
-                const Matrix<3> of_points = plane * M * edges.transpose();
-                Vector<6> row;
-                for (int i = 0; i < 3; ++i) {
-                    row.segment<2>(2 * i) =
-                        state.directions[corner.points[i]].transpose() * of_points.col(i);
-                }
-                return row;
+            const Vector<6> free = free_unknowns(corners_[c], is_free);
+            const SymmetricDirichlet term(gradient(state, corners_[c]));
+            Matrix<6> hessian = weight * (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
+            const auto along_free = [&](const Matrix<2>& along_gradient) {
+                return Vector<6>(
+                    free.cwiseProduct(pulled_back(state, corners_[c], along_gradient)));
             };
-            if (takes_lengths_only) {
-                Matrix<6> hessian = Matrix<6>::Zero();
-                for (int m = 0; m < 4; ++m) {
-                    Matrix<2> unit = Matrix<2>::Zero();
-                    unit(m / 2, m % 2) = 1.0;
-                    const Vector<6> row = pulled_back(unit);
-                    hessian += weight * row * row.transpose();
-                }
-                system.add(static_cast<int>(c), weight * pulled_back(F), hessian);
-                continue;
-            }
-            const SymmetricDirichlet term(F);
-            Matrix<6> hessian = Matrix<6>::Zero();
             for (int m = 0; m < 4; ++m) {
-                const Vector<6> row = pulled_back(term.modes[m]);
+                const Vector<6> row = along_free(term.modes[m]);
                 hessian.noalias() += (weight * term.eigenvalues[m]) * row * row.transpose();
             }
-            system.add(static_cast<int>(c), weight * pulled_back(term.gradient), hessian);
+            system.add(static_cast<int>(c), weight * along_free(term.gradient), hessian);
         }
+    }
+
+    /// The sum of squared lengths, which no inverted cell disturbs.
+    ///
+    /// @param is_free  points that may move
+    void assemble_lengths(const SurfaceSlide::State& state, const std::vector<bool>& is_free,
+                          NewtonSystem& system) const {
+        system.set_zero();
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            const CellCorner& corner = corners_[c];
+            const Vector<6> free = free_unknowns(corner, is_free);
+            Matrix<6> hessian = (Vector<6>::Ones() - free).asDiagonal();
+            for (int m = 0; m < 4; ++m) {
+                Matrix<2> unit = Matrix<2>::Zero();
+                unit(m / 2, m % 2) = 1.0;
+                const Vector<6> row = free.cwiseProduct(pulled_back(state, corner, unit));
+                hessian += row * row.transpose();
+            }
+            system.add(static_cast<int>(c),
+                       free.cwiseProduct(pulled_back(state, corner, gradient(state, corner))),
+                       hessian);
+        }
+    }
+
+    /// Adds the points of cells with an inverted corner, or one that is nearly so; whether there
+    /// are such.
+    bool add_inverted(const SurfaceSlide::State& state, std::vector<bool>& points) const {
+        constexpr double least_determinant = 0.05;
+        bool is_any = false;
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            const Matrix<2> F = gradient(state, corners_[c]);
+            if (F.determinant() > least_determinant * 0.5 * F.squaredNorm()) continue;
+            is_any = true;
+            // Two opposite corners have all points of their cell.
+            const std::size_t first = c / 4 * 4;
+            for (std::size_t k = first; k < first + 4; ++k) {
+                for (const int point : corners_[k].points) points[point] = true;
+            }
+        }
+        return is_any;
+    }
+
+    /// Holds the points of cells that are steeper than allowed; whether there were free ones.
+    bool hold_steep(const SurfaceSlide::State& state, const std::vector<double>& least_cosines,
+                    std::vector<bool>& is_free) const {
+        const std::vector<double> cosines = steepness(state);
+        bool is_any = false;
+        for (std::size_t cell = 0; cell < cosines.size(); ++cell) {
+            if (cosines[cell] >= least_cosines[cell]) continue;
+            for (std::size_t k = 4 * cell; k < 4 * cell + 4; ++k) {
+                for (const int point : corners_[k].points) {
+                    is_any = is_any || is_free[point];
+                    is_free[point] = false;
+                }
+            }
+        }
+        return is_any;
+    }
+
+    /// For each cell the smallest cosine of the angles between its normal and the surface's in its
+    /// corners.
+    [[nodiscard]] std::vector<double> steepness(const SurfaceSlide::State& state) const {
+        std::vector<double> cosines;
+        for (std::size_t first = 0; first < corners_.size(); first += 4) {
+            const CellCorner& cell = corners_[first];
+            const MatrixX& normals = state.normals[cell.quad];
+            const Vector3 normal = cell_normal(state, cell);
+            double least = 1.0;
+            for (const int at : {cell.first, cell.first + 1, cell.above, cell.above + 1}) {
+                least = std::min(least, normal.dot(normals.col(at)));
+            }
+            cosines.push_back(least);
+        }
+        return cosines;
+    }
+
+    /// Adds the points of cells that have one of the points.
+    [[nodiscard]] std::vector<bool> with_neighbours(const std::vector<bool>& points) const {
+        std::vector<bool> result = points;
+        for (std::size_t first = 0; first < corners_.size(); first += 4) {
+            bool has_some = false;
+            for (std::size_t k = first; k < first + 4; ++k) {
+                for (const int point : corners_[k].points) has_some = has_some || points[point];
+            }
+            for (std::size_t k = first; has_some && k < first + 4; ++k) {
+                for (const int point : corners_[k].points) result[point] = true;
+            }
+        }
+        return result;
     }
 
     /// The points' moves, and the part of them that moves none farther than its cells are long.
@@ -176,16 +246,43 @@ class CellEnergy {
     }
 
   private:
+    /// 1 for the unknowns of points that may move, else 0.
+    [[nodiscard]] static Vector<6> free_unknowns(const CellCorner& corner,
+                                                 const std::vector<bool>& is_free) {
+        Vector<6> free;
+        for (int i = 0; i < 6; ++i) free[i] = is_free[corner.points[i / 2]] ? 1.0 : 0.0;
+        return free;
+    }
+
+    /// The derivative along the unknowns of a function of the gradient, from that along the
+    /// gradient's entries.
+    [[nodiscard]] Vector<6> pulled_back(const SurfaceSlide::State& state, const CellCorner& corner,
+                                        const Matrix<2>& along_gradient) const {
+        const Matrix<3> of_points =
+            tangent_plane(state, corner) * along_gradient * scaled_edges(corner).transpose();
+        Vector<6> row;
+        for (int i = 0; i < 3; ++i) {
+            row.segment<2>(2 * i) =
+                state.directions[corner.points[i]].transpose() * of_points.col(i);
+        }
+        return row;
+    }
+
     [[nodiscard]] Matrix<3, 2> scaled_edges(const CellCorner& corner) const {
         return corner.edges * corner.lengths.cwiseInverse().asDiagonal() / cell_size_;
     }
 
+    [[nodiscard]] static Vector3 cell_normal(const SurfaceSlide::State& state,
+                                             const CellCorner& corner) {
+        const MatrixX& normals = state.normals[corner.quad];
+        return (normals.col(corner.first) + normals.col(corner.first + 1) +
+                normals.col(corner.above) + normals.col(corner.above + 1))
+            .normalized();
+    }
+
     [[nodiscard]] static Matrix<3, 2> tangent_plane(const SurfaceSlide::State& state,
                                                     const CellCorner& corner) {
-        const MatrixX& normals = state.normals[corner.quad];
-        const Vector3 normal = (normals.col(corner.first) + normals.col(corner.first + 1) +
-                                normals.col(corner.above) + normals.col(corner.above + 1))
-                                   .normalized();
+        const Vector3 normal = cell_normal(state, corner);
         Matrix<3, 2> plane;
         plane.col(0) = normal.unitOrthogonal();
         plane.col(1) = normal.cross(Vector3(plane.col(0)));
@@ -206,29 +303,52 @@ class CellEnergy {
     double cell_size_ = 1.0;
 };
 
-/// Steps towards short edges until no corner is inverted; false if some are left.
+/// Steps towards short edges around inverted corners, ever farther around them, until none is left;
+/// false if some are. What lies far from them stays: short edges would slip off the surface's
+/// fingers.
 bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
               SurfaceSlide::State& state) {
     constexpr int max_steps = 30;
-    for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
-        energy.assemble(state, true, system);
+    if (energy.n_inverted(state) == 0) return true;
+    std::vector<bool> is_free(state.directions.size(), false);
+    for (int i = 0; i < max_steps && energy.add_inverted(state, is_free); ++i) {
+        is_free = energy.with_neighbours(is_free);
+        energy.assemble_lengths(state, is_free, system);
         const auto [moves, part] = energy.moves(state, system.step());
         state = slide.placed(state.points + part * moves);
     }
     return energy.n_inverted(state) == 0;
 }
 
+/// Points that may move, and how steep cells may become: a cell whose corners slide down a finger
+/// of the surface, off its tip, has less energy but leaves the tip out.
+struct Hold {
+    std::vector<bool> is_free;
+    std::vector<double> least_cosines;
+};
+
+Hold make_hold(const CellEnergy& energy, const SurfaceSlide::State& state) {
+    constexpr double least_cosine = 0.7;
+    Hold hold{std::vector<bool>(state.directions.size(), true), energy.steepness(state)};
+    for (double& cosine : hold.least_cosines) cosine = std::min(cosine - 1e-6, least_cosine);
+    return hold;
+}
+
 /// One step with the energy falling; false if there is none.
 bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-               SurfaceSlide::State& state) {
-    energy.assemble(state, false, system);
-    const auto [moves, part] = energy.moves(state, system.step());
-    const double start = energy.value(state);
+               SurfaceSlide::State& state, Hold& hold) {
     constexpr int max_halvings = 12;
-    double t = part;
-    for (int i = 0; i < max_halvings; ++i, t *= 0.5) {
-        SurfaceSlide::State moved = slide.placed(state.points + t * moves);
-        if (energy.value(moved) < start) {
+    const double start = energy.value(state);
+    for (bool has_held = true; has_held;) {
+        has_held = false;
+        energy.assemble(state, hold.is_free, system);
+        const auto [moves, part] = energy.moves(state, system.step());
+        double t = part;
+        for (int i = 0; i < max_halvings && !has_held; ++i, t *= 0.5) {
+            SurfaceSlide::State moved = slide.placed(state.points + t * moves);
+            if (energy.value(moved) >= start) continue;
+            has_held = energy.hold_steep(moved, hold.least_cosines, hold.is_free);
+            if (has_held) break;
             state = std::move(moved);
             return true;
         }
@@ -239,10 +359,11 @@ bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
               NewtonSystem& system, SurfaceSlide::State& state, NodeRelocationReport& report) {
     energy.fit_cell_size(state);
+    Hold hold = make_hold(energy, state);
     report.energies.push_back(energy.value(state));
     for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
         const double start = report.energies.back();
-        if (!step_down(energy, slide, system, state)) {
+        if (!step_down(energy, slide, system, state, hold)) {
             // As far as the surface's facets allow.
             report.is_converged = true;
             return;
