@@ -172,6 +172,8 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     });
     meshing::SolidMeshOptions& solid = deck.solid;
     solid.element_size = section.number("element_size", dimensions::length, positive).value_or(0.0);
+    solid.tolerance =
+        section.number("tolerance", dimensions::none, positive).value_or(solid.tolerance);
     constexpr int most_elements = 1000;
     solid.min_elements =
         section.integer("min_elements", 1, most_elements).value_or(solid.min_elements);

@@ -24,8 +24,13 @@ enum class SolidStage { layout, field, map, quads, volume };
 struct SolidMeshOptions {
     /// The last stage that is run.
     SolidStage last = SolidStage::volume;
-    /// Wanted length of a spline element; 0: a twentieth of the diagonal of the surface's box.
+    /// Wanted length of a spline element; 0: a twentieth of the diagonal of the surface's box to
+    /// begin with, and more elements where splines are farther from the surface than the tolerance
+    /// (only for the stage volume).
     double element_size = 0.0;
+    /// Wanted distance of splines and surface over the diagonal of the surface's box; half of it
+    /// along sharp edges. Read where the element size is 0.
+    double tolerance = 1e-3;
     /// Elements of each sheet of cuboids, at least.
     int min_elements = 2;
     /// The closed surface with the names of its faces: outer sides of cuboids become sets by them.
