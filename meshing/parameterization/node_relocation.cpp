@@ -325,36 +325,65 @@ Hold make_hold(const CellEnergy& energy, const SurfaceSlide::State& state) {
     return hold;
 }
 
+struct LineSearch {
+    SurfaceSlide::State state;
+    /// Of the longest step.
+    double part = 0.0;
+};
+
 /// The largest part of the moves, halved again and again, at which the value is lower.
 template <typename Value>
-std::optional<SurfaceSlide::State> search_along(const SurfaceSlide& slide,
-                                                const SurfaceSlide::State& state,
-                                                const MatrixX& moves, double part,
-                                                const Value& value) {
+std::optional<LineSearch> search_along(const SurfaceSlide& slide, const SurfaceSlide::State& state,
+                                       const MatrixX& moves, const Value& value) {
     const double start = value(state);
     constexpr int max_halvings = 12;
+    double part = 1.0;
     for (int i = 0; i < max_halvings; ++i, part *= 0.5) {
         SurfaceSlide::State moved = slide.placed(state.points + part * moves);
-        if (value(moved) < start) return moved;
+        if (value(moved) < start) return LineSearch{std::move(moved), part};
     }
     return std::nullopt;
 }
 
-/// A Newton step along which a value falls; false if there is none. Steps that would make cells
-/// too steep are taken again with these held.
+/// A Newton step along which a value falls. Steps that would make cells too steep are taken again
+/// with these held.
+///
+/// @return the part of the step that was taken; 0 if there is none
 template <typename Assemble, typename Value>
-bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-               const Assemble& assemble, const Value& value, SurfaceSlide::State& state,
-               Hold& hold) {
+double step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                 const Assemble& assemble, const Value& value, SurfaceSlide::State& state,
+                 Hold& hold) {
     while (true) {
-        assemble(hold.is_free);
-        const auto [moves, part] = energy.moves(state, system.step());
-        std::optional<SurfaceSlide::State> moved = search_along(slide, state, moves, part, value);
-        if (!moved) return false;
-        if (energy.hold_steep(*moved, hold.least_cosines, hold.is_free)) continue;
-        state = std::move(*moved);
-        return true;
+        assemble(state, hold.is_free);
+        const auto [moves, longest] = energy.moves(state, system.step());
+        std::optional<LineSearch> found = search_along(slide, state, longest * moves, value);
+        if (!found) return 0.0;
+        if (energy.hold_steep(found->state, hold.least_cosines, hold.is_free)) continue;
+        state = std::move(found->state);
+        return found->part;
     }
+}
+
+double newton_step(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                   SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble(at, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.value(at); }, state, hold);
+}
+
+/// @param width  see CellEnergy::regularised_value
+double regularised_step(const CellEnergy& energy, const SurfaceSlide& slide, double width,
+                        NewtonSystem& system, SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble_regularised(at, width, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.regularised_value(at, width); }, state,
+        hold);
 }
 
 /// Lowers the regularised energy until no corner is inverted; false if some are left.
@@ -366,29 +395,51 @@ bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem&
     Hold hold = make_hold(energy, state);
     for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
         const double width = std::max(least_width, -energy.min_jacobian(state));
-        const auto assemble = [&](const std::vector<bool>& is_free) {
-            energy.assemble_regularised(state, width, is_free, system);
-        };
-        const auto value = [&](const SurfaceSlide::State& at) {
-            return energy.regularised_value(at, width);
-        };
-        if (!step_down(energy, slide, system, assemble, value, state, hold)) break;
+        if (regularised_step(energy, slide, width, system, state, hold) == 0.0) break;
     }
     return energy.n_inverted(state) == 0;
 }
 
+/// Goes down by the regularised energy, which the worst corners don't rule, and from there by the
+/// energy itself; false if that does not end below the start.
+bool escape(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+            SurfaceSlide::State& state, const Hold& hold) {
+    constexpr int max_steps = 5;
+    for (const double width : {0.1, 0.3, 1.0}) {
+        SurfaceSlide::State moved = state;
+        Hold moved_hold = hold;
+        for (int i = 0; i < max_steps; ++i) {
+            regularised_step(energy, slide, width, system, moved, moved_hold);
+        }
+        for (int i = 0; i < max_steps; ++i) {
+            newton_step(energy, slide, system, moved, moved_hold);
+        }
+        if (energy.value(moved) < energy.value(state)) {
+            state = std::move(moved);
+            return true;
+        }
+    }
+    return false;
+}
+
+/// One step with the energy falling; false if there is none.
+bool descend(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+             SurfaceSlide::State& state, Hold& hold) {
+    const double part = newton_step(energy, slide, system, state, hold);
+    // The planes of cells turn as their points move, which the derivatives leave out: beside nearly
+    // inverted corners they may not lead down.
+    constexpr double stuck = 0.05;
+    return (part < stuck && escape(energy, slide, system, state, hold)) || part > 0.0;
+}
+
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
               NewtonSystem& system, SurfaceSlide::State& state, NodeRelocationReport& report) {
-    const auto value = [&](const SurfaceSlide::State& at) { return energy.value(at); };
-    const auto assemble = [&](const std::vector<bool>& is_free) {
-        energy.assemble(state, is_free, system);
-    };
     energy.fit_cell_size(state);
     Hold hold = make_hold(energy, state);
     report.energies.push_back(energy.value(state));
     for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
         const double start = report.energies.back();
-        if (!step_down(energy, slide, system, assemble, value, state, hold)) {
+        if (!descend(energy, slide, system, state, hold)) {
             // As far as the surface's facets allow.
             report.is_converged = true;
             return;
