@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "drivers/commands/commands.h"
-#include "drivers/hash.h"
 #include "drivers/mesh_family.h"
 #include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "io/mesh_deck.h"
 #include "io/spline_file.h"
@@ -345,7 +345,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     }
     const std::string provenance =
         fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
-                    deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));
+                    deck.text.empty() ? "" : fmt::format("; deck hash {}", text_hash(deck.text)));
     std::vector<std::string> files;
     for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
         const auto which = static_cast<MeshStage>(stage);
