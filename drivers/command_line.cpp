@@ -159,7 +159,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");
 
-    sub = add_command(app, command, "info", "say what a spline or surface file holds",
+    sub = add_command(app, command, "info",
+                      "say what a spline, surface or hexahedral mesh file holds",
                       [&command, from] { return run_info(*from, command.common); });
     sub->add_option("file", from->surface,
                     "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), or the name of "

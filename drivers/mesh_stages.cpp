@@ -348,7 +348,7 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (stage > MeshStage::pants) {
         std::vector<std::filesystem::path> files =
             write_solid_stage(stem, *stages.solid, solid_stage(stage), png, provenance);
-        if (stage == MeshStage::layout) {
+        if (stage == MeshStage::layout && stages.record) {
             files.push_back(stem.string() + ".json");
             io::write_layout_record(files.back(), *stages.record, stages.solid->cuboids.record,
                                     provenance);

@@ -189,6 +189,12 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
                         "'layout' takes the place of pants and templates: 'templates' and 'like' "
                         "have no place beside it");
     }
+    if (!deck.layout.empty() && (deck.stage == "loops" || deck.stage == "pants")) {
+        section.mistake(
+            "layout", fmt::format("'layout' takes the place of pants: stage = \"{}\" has no place "
+                                  "beside it; write \"layout\" or a later one",
+                                  deck.stage));
+    }
     if (!deck.like.empty() && !(pants.loops.empty() && deck.cycles_through.empty())) {
         section.mistake("like",
                         "'like' repeats all cuts of another member: [[meshing.loop]] and "

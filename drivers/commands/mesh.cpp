@@ -137,6 +137,17 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     deck.solid.volume.degree = options.degree.value_or(deck.solid.volume.degree);
     deck.layout = options.layout;
     deck.like = options.like;
+    if (!deck.layout.empty() && !deck.like.empty()) {
+        throw InputError(
+            "mesh: --layout takes the place of the cuts and cuboids that --like repeats; give one "
+            "of them");
+    }
+    if (!deck.layout.empty() && (deck.stage == "loops" || deck.stage == "pants")) {
+        throw InputError(
+            "mesh: --layout takes the place of pants: stage {} has no place beside it; add --stage "
+            "layout or a later one",
+            deck.stage);
+    }
     if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
                                options.most_boundaries)) {
         throw InputError(
@@ -178,6 +189,32 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                         {"hausdorff_features", solid.distance->features}};
 }
 
+void add_pants(const MeshStages& stages, nlohmann::ordered_json& object) {
+    auto& curves = object["curves"] = nlohmann::ordered_json::array();
+    for (const auto& curve : stages.pants->curves) {
+        curves.push_back({{"kind", std::string(meshing::to_string(curve.kind))},
+                          {"name", curve.name},
+                          {"length", curve.length},
+                          {"vertices", curve.curve.vertices.size()}});
+    }
+    auto& tunnels = object["tunnels"] = nlohmann::ordered_json::array();
+    for (const auto& tunnel : stages.pants->tunnels) {
+        double length = 0.0;
+        for (std::size_t k = 0; k < tunnel.size(); ++k) {
+            length += (tunnel[(k + 1) % tunnel.size()] - tunnel[k]).norm();
+        }
+        tunnels.push_back(length);
+    }
+    auto& patches = object["patches"] = nlohmann::ordered_json::array();
+    for (const auto& patch : stages.pants->patches) {
+        auto sides = nlohmann::ordered_json::array();
+        for (const auto& side : patch.boundary) {
+            sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
+        }
+        patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
+    }
+}
+
 nlohmann::ordered_json to_json(const MeshStages& stages) {
     const auto& invariants = stages.invariants;
     nlohmann::ordered_json object = {{"surface",
@@ -205,30 +242,7 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
     object["features"] = {{"curves", stages.features.curves.size()},
                           {"corners", stages.features.corners.size()},
                           {"faces", stages.features.regions.size()}};
-    if (!stages.pants) return object;
-    auto& curves = object["curves"] = nlohmann::ordered_json::array();
-    for (const auto& curve : stages.pants->curves) {
-        curves.push_back({{"kind", std::string(meshing::to_string(curve.kind))},
-                          {"name", curve.name},
-                          {"length", curve.length},
-                          {"vertices", curve.curve.vertices.size()}});
-    }
-    auto& tunnels = object["tunnels"] = nlohmann::ordered_json::array();
-    for (const auto& tunnel : stages.pants->tunnels) {
-        double length = 0.0;
-        for (std::size_t k = 0; k < tunnel.size(); ++k) {
-            length += (tunnel[(k + 1) % tunnel.size()] - tunnel[k]).norm();
-        }
-        tunnels.push_back(length);
-    }
-    auto& patches = object["patches"] = nlohmann::ordered_json::array();
-    for (const auto& patch : stages.pants->patches) {
-        auto sides = nlohmann::ordered_json::array();
-        for (const auto& side : patch.boundary) {
-            sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
-        }
-        patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
-    }
+    if (stages.pants) add_pants(stages, object);
     if (stages.solid) add_solid(*stages.solid, object);
     return object;
 }

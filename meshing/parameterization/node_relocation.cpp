@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "iga/core/error.h"
 #include "meshing/parameterization/newton_system.h"
@@ -110,43 +111,64 @@ class CellEnergy {
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
 
-    /// @param takes_lengths_only  the sum of squared lengths, which no inverted cell disturbs
-    void assemble(const SurfaceSlide::State& state, bool takes_lengths_only,
-                  NewtonSystem& system) const {
+    void assemble(const SurfaceSlide::State& state, NewtonSystem& system) const {
         system.set_zero();
-        const double weight = 1.0 / static_cast<double>(corners_.size());
         for (std::size_t c = 0; c < corners_.size(); ++c) {
-            const CellCorner& corner = corners_[c];
-            const Matrix<3, 2> plane = tangent_plane(state, corner);
+            const SymmetricDirichlet term(gradient(state, corners_[c]));
+            add(state, static_cast<int>(c), term.gradient,
+                {{term.modes.begin(), term.modes.end()},
+                 {term.eigenvalues.begin(), term.eigenvalues.end()}},
+                system);
+        }
+    }
+
+    /// The smallest Jacobian determinant of a corner.
+    [[nodiscard]] double min_jacobian(const SurfaceSlide::State& state) const {
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const CellCorner& corner : corners_) {
+            smallest = std::min(smallest, gradient(state, corner).determinant());
+        }
+        return smallest;
+    }
+
+    /// The mean of |F|^2 (1 + 1 / chi^2), chi = (det F + sqrt(det F^2 + width^2)) / 2: finite for
+    /// inverted corners too, near to the symmetric Dirichlet energy for others.
+    ///
+    /// Source: [Escobar03] (the regularised determinant).
+    [[nodiscard]] double regularised_value(const SurfaceSlide::State& state, double width) const {
+        double sum = 0.0;
+        for (const CellCorner& corner : corners_) {
             const Matrix<2> F = gradient(state, corner);
-            const Matrix<3, 2> edges = scaled_edges(corner);
-            const auto pulled_back = [&](const Matrix<2>& M) {
-                const Matrix<3> of_points = plane * M * edges.transpose();
-                Vector<6> row;
-                for (int i = 0; i < 3; ++i) {
-                    row.segment<2>(2 * i) =
-                        state.directions[corner.points[i]].transpose() * of_points.col(i);
-                }
-                return row;
-            };
-            if (takes_lengths_only) {
-                Matrix<6> hessian = Matrix<6>::Zero();
-                for (int m = 0; m < 4; ++m) {
-                    Matrix<2> unit = Matrix<2>::Zero();
-                    unit(m / 2, m % 2) = 1.0;
-                    const Vector<6> row = pulled_back(unit);
-                    hessian += weight * row * row.transpose();
-                }
-                system.add(static_cast<int>(c), weight * pulled_back(F), hessian);
-                continue;
-            }
-            const SymmetricDirichlet term(F);
-            Matrix<6> hessian = Matrix<6>::Zero();
+            const double chi = regularised(F.determinant(), width).first;
+            sum += F.squaredNorm() * (1.0 + 1.0 / (chi * chi));
+        }
+        return sum / static_cast<double>(corners_.size());
+    }
+
+    /// Its gradient, and the part of its Hessian that is positive for sure.
+    void assemble_regularised(const SurfaceSlide::State& state, double width,
+                              NewtonSystem& system) const {
+        system.set_zero();
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            const Matrix<2> F = gradient(state, corners_[c]);
+            const auto [chi, slope] = regularised(F.determinant(), width);
+            Matrix<2> cofactor;
+            cofactor << F(1, 1), -F(1, 0), -F(0, 1), F(0, 0);
+            const double inverse_square = 1.0 / (chi * chi);
+            const double squares = F.squaredNorm();
+            Modes modes;
             for (int m = 0; m < 4; ++m) {
-                const Vector<6> row = pulled_back(term.modes[m]);
-                hessian.noalias() += (weight * term.eigenvalues[m]) * row * row.transpose();
+                modes.matrices.push_back(Matrix<2>::Zero());
+                modes.matrices.back()(m / 2, m % 2) = 1.0;
+                modes.eigenvalues.push_back(2.0 * (1.0 + inverse_square));
             }
-            system.add(static_cast<int>(c), weight * pulled_back(term.gradient), hessian);
+            modes.matrices.push_back(cofactor);
+            modes.eigenvalues.push_back(6.0 * squares * slope * slope * inverse_square *
+                                        inverse_square);
+            add(state, static_cast<int>(c),
+                2.0 * (1.0 + inverse_square) * F -
+                    (2.0 * squares * slope * inverse_square / chi) * cofactor,
+                modes, system);
         }
     }
 
@@ -176,6 +198,44 @@ class CellEnergy {
     }
 
   private:
+    /// The sum of eigenvalues times outer squares of matrices.
+    struct Modes {
+        std::vector<Matrix<2>> matrices;
+        std::vector<double> eigenvalues;
+    };
+
+    /// chi and its derivative.
+    [[nodiscard]] static std::pair<double, double> regularised(double det, double width) {
+        const double root = std::sqrt(det * det + width * width);
+        // Without cancellation.
+        const double chi = det > 0.0 ? 0.5 * (det + root) : 0.5 * width * width / (root - det);
+        return {chi, chi / root};
+    }
+
+    /// Adds a corner's gradient and Hessian with respect to F.
+    void add(const SurfaceSlide::State& state, int c, const Matrix<2>& of_F, const Modes& modes,
+             NewtonSystem& system) const {
+        const CellCorner& corner = corners_[c];
+        const double weight = 1.0 / static_cast<double>(corners_.size());
+        const Matrix<3, 2> plane = tangent_plane(state, corner);
+        const Matrix<3, 2> edges = scaled_edges(corner);
+        const auto pulled_back = [&](const Matrix<2>& M) {
+            const Matrix<3> of_points = plane * M * edges.transpose();
+            Vector<6> row;
+            for (int i = 0; i < 3; ++i) {
+                row.segment<2>(2 * i) =
+                    state.directions[corner.points[i]].transpose() * of_points.col(i);
+            }
+            return row;
+        };
+        Matrix<6> hessian = Matrix<6>::Zero();
+        for (std::size_t m = 0; m < modes.matrices.size(); ++m) {
+            const Vector<6> row = pulled_back(modes.matrices[m]);
+            hessian.noalias() += (weight * modes.eigenvalues[m]) * row * row.transpose();
+        }
+        system.add(c, weight * pulled_back(of_F), hessian);
+    }
+
     [[nodiscard]] Matrix<3, 2> scaled_edges(const CellCorner& corner) const {
         return corner.edges * corner.lengths.cwiseInverse().asDiagonal() / cell_size_;
     }
@@ -206,29 +266,17 @@ class CellEnergy {
     double cell_size_ = 1.0;
 };
 
-/// Steps towards short edges until no corner is inverted; false if some are left.
-bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-              SurfaceSlide::State& state) {
-    constexpr int max_steps = 30;
-    for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
-        energy.assemble(state, true, system);
-        const auto [moves, part] = energy.moves(state, system.step());
-        state = slide.placed(state.points + part * moves);
-    }
-    return energy.n_inverted(state) == 0;
-}
-
-/// One step with the energy falling; false if there is none.
+/// A Newton step of the assembled system along which a value falls; false if there is none.
+template <typename Value>
 bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-               SurfaceSlide::State& state) {
-    energy.assemble(state, false, system);
+               const Value& value, SurfaceSlide::State& state) {
     const auto [moves, part] = energy.moves(state, system.step());
-    const double start = energy.value(state);
+    const double start = value(state);
     constexpr int max_halvings = 12;
     double t = part;
     for (int i = 0; i < max_halvings; ++i, t *= 0.5) {
         SurfaceSlide::State moved = slide.placed(state.points + t * moves);
-        if (energy.value(moved) < start) {
+        if (value(moved) < start) {
             state = std::move(moved);
             return true;
         }
@@ -236,13 +284,31 @@ bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem
     return false;
 }
 
+/// Lowers the regularised energy until no corner is inverted; false if some are left.
+bool untangle(CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+              SurfaceSlide::State& state) {
+    constexpr int max_steps = 100;
+    constexpr double least_width = 0.02;
+    for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
+        const double width = std::max(least_width, -energy.min_jacobian(state));
+        energy.assemble_regularised(state, width, system);
+        const auto value = [&](const SurfaceSlide::State& at) {
+            return energy.regularised_value(at, width);
+        };
+        if (!step_down(energy, slide, system, value, state)) break;
+    }
+    return energy.n_inverted(state) == 0;
+}
+
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
               NewtonSystem& system, SurfaceSlide::State& state, NodeRelocationReport& report) {
+    const auto value = [&](const SurfaceSlide::State& at) { return energy.value(at); };
     energy.fit_cell_size(state);
     report.energies.push_back(energy.value(state));
     for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
         const double start = report.energies.back();
-        if (!step_down(energy, slide, system, state)) {
+        energy.assemble(state, system);
+        if (!step_down(energy, slide, system, value, state)) {
             // As far as the surface's facets allow.
             report.is_converged = true;
             return;

@@ -229,6 +229,17 @@ LayoutNets fit_boundary(const VolumetricLayout& layout, const LayoutCells& cells
     return nets;
 }
 
+// With straight inner edges; if that stays folded, with inner edges that are bent as those around.
+ParameterizedVolume fill_volume(const VolumetricLayout& layout, const LayoutCells& cells,
+                                LayoutNets nets, const ParameterizationOptions& options) {
+    ParameterizedVolume straight =
+        parameterize_volume(make_multipatch(layout, cells, nets), options);
+    if (straight.report.validity == iga::Validity::valid) return straight;
+    bend_edges(cells, nets);
+    ParameterizedVolume bent = parameterize_volume(make_multipatch(layout, cells, nets), options);
+    return bent.report.validity < straight.report.validity ? bent : straight;
+}
+
 }  // namespace
 
 LayoutVolume make_layout_volume(const VolumetricLayout& layout, const LayoutSamples& samples,
@@ -239,8 +250,7 @@ LayoutVolume make_layout_volume(const VolumetricLayout& layout, const LayoutSamp
     LayoutVolumeReport report;
     report.euler_characteristic = complex.euler_characteristic();
     LayoutNets nets = fit_boundary(layout, cells, samples, options, report);
-    auto [volume, parameterization] = parameterize_volume(
-        make_multipatch(layout, cells, std::move(nets)), options.parameterization);
+    auto [volume, parameterization] = fill_volume(layout, cells, nets, options.parameterization);
     if (options.slide_boundary && parameterization.validity == iga::Validity::valid) {
         volume = optimize_volume(volume, BoundaryFeatures(volume), {.hold_reentrant_edges = false})
                      .volume;

@@ -42,7 +42,8 @@ struct LayoutVolume {
 /// Corners interpolate the nodes, then each arc is fitted once, then each face once with its
 /// border fixed; nodes inside are placed with straight cuboids (see place_inner_nodes), inner edges
 /// are straight, inner faces and volumes Coons patches; then all control points that are not on the
-/// boundary move (see parameterize_volume). All edges of a sheet have one uniform open knot vector:
+/// boundary move (see parameterize_volume). If cuboids stay folded, inner edges start bent as those
+/// around them (see bend_edges). All edges of a sheet have one uniform open knot vector:
 /// neighbours share control points exactly.
 ///
 /// Whether det J is certified, and the quality: see the report.

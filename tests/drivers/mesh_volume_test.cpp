@@ -31,7 +31,8 @@ void check_volume(const fs::path& deck, const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("mesh: parts of genus 1 to 5 become valid volumes", "[drivers]") {
-    const std::string name = GENERATE("torus", "plate", "plate_with_two_holes", "sierpinski");
+    const std::string name =
+        GENERATE("torus", "double_torus", "plate", "plate_with_two_holes", "sierpinski");
     CAPTURE(name);
     const TemporaryFolder folder;
     check_volume(fs::path(COUTURE_SOURCE_DIR) / "drivers/decks" / ("mesh_" + name + ".toml"),

@@ -43,6 +43,21 @@ TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pip
     }
 }
 
+TEST_CASE("mesh_solid: tori that meet become certified splines", "[pipeline]") {
+    const SolidMesh solid = mesh_solid(cuboids_of(cut_part("double_torus", {}, 4.0)));
+    const auto& report = solid.volume->report;
+    CHECK(report.parameterization.validity == iga::Validity::valid);
+    CHECK(report.quality.min_scaled_jacobian > 0.2);
+    CHECK(report.quality.mean_scaled_jacobian > 0.8);
+    CHECK(solid.distance->surface < 1e-3);
+    CHECK(solid.distance->features < 5e-4);
+    const auto refined =
+        iga::refine<3>(solid.volume->volume, std::nullopt, std::array<int, 3>{8, 8, 8});
+    for (const auto& patch : refined.patches) {
+        CHECK(iga::certify(patch).validity == iga::Validity::valid);
+    }
+}
+
 TEST_CASE("mesh_solid: stages end where they are asked to, options are checked", "[pipeline]") {
     const Job job = cut_part("pant");
     SolidMeshOptions options;
