@@ -118,9 +118,11 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
            "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), a "
            "deck (.toml), or a spline file (.xml, .mesh, .txt, .inp, .h5)")
         ->required();
-    sub->add_option("--stage", mesh->stage,
-                    "the last stage: surface, features, loops, pants (default), layout, "
-                    "field, map, quads, volume, hexes; of splines: volume (from surfaces), hexes");
+    sub->add_option(
+        "--stage", mesh->stage,
+        "the last stage: surface, features, loops, pants (default), layout, "
+        "field, map, quads, surfaces, volume, hexes; of splines: volume (from surfaces), "
+        "hexes");
     sub->add_option("--points", mesh->n_points,
                     "points per direction of the hexahedra in each patch (default: as many as "
                     "control points)");

@@ -29,8 +29,9 @@ namespace {
 
 using namespace meshing;
 
-constexpr std::array<const char*, 9> stage_names{"surface", "features", "loops", "pants", "layout",
-                                                 "field",   "map",      "quads", "volume"};
+constexpr std::array<const char*, 11> stage_names{"surface",  "features", "loops", "pants",
+                                                  "layout",   "field",    "map",   "quads",
+                                                  "surfaces", "volume",   "hexes"};
 
 // Weight of sharp edges in the criterion of cycles if the deck gives none and cuboids are to
 // follow: cuts cross them.

@@ -119,7 +119,7 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     meshing::PantsOptions& pants = deck.pants;
     deck.stage = section
                      .choice("stage", {"surface", "features", "loops", "pants", "layout", "field",
-                                       "map", "quads", "volume"})
+                                       "map", "quads", "surfaces", "volume", "hexes"})
                      .value_or(deck.stage);
     deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
     if (deck.edge_length > 0.0 && deck.part.empty()) {
@@ -181,6 +181,8 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
                         "'alignment' draws the optimised map to the cross field; it has no place "
                         "beside parameterization = \"harmonic\"");
     }
+    constexpr int most_points = 1000;
+    solid.n_points = section.integer("points", 2, most_points);
     read_existing_file(section, "templates", folder, deck.templates);
     read_existing_file(section, "layout", folder, deck.layout);
     read_existing_file(section, "like", folder, deck.like);

@@ -27,6 +27,10 @@ void check_options(const SolidMeshOptions& options) {
         throw InputError("mesh: {} samples per element; splines need 2 or more",
                          options.samples_per_element);
     }
+    if (options.n_points && *options.n_points < 2) {
+        throw InputError("mesh: {} points per direction; hexahedra need 2 or more",
+                         *options.n_points);
+    }
 }
 
 // Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
@@ -136,13 +140,23 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
     solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), mesh);
     if (options.last == SolidStage::quads) return solid;
 
-    say("fitting splines and filling the volume");
     LayoutVolumeOptions volume = options.volume;
     volume.n_elements = elements;
-    solid.volume = make_layout_volume(
-        solid.cuboids.volume,
-        refine_samples(mesh, surface, *solid.quads, options.samples_per_element), volume);
+    const LayoutSamples samples =
+        refine_samples(mesh, surface, *solid.quads, options.samples_per_element);
+    if (options.last == SolidStage::surfaces) {
+        say("fitting splines");
+        solid.surfaces = make_layout_surfaces(solid.cuboids.volume, samples, volume);
+        return solid;
+    }
+
+    say("fitting splines and filling the volume");
+    solid.volume = make_layout_volume(solid.cuboids.volume, samples, volume);
     solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
+    if (options.last == SolidStage::volume) return solid;
+
+    say("sampling hexahedra");
+    solid.hexes = sample_hexahedra(solid.volume->volume, options.n_points);
     return solid;
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "io/atomic_file.h"
+#include "io/spline_file.h"
 #include "tests/data_folder.h"
 #include "tests/drivers/run_program.h"
 
@@ -37,6 +39,38 @@ TEST_CASE("mesh: parts of genus 1 to 5 become valid volumes", "[drivers]") {
     const TemporaryFolder folder;
     check_volume(fs::path(COUTURE_SOURCE_DIR) / "drivers/decks" / ("mesh_" + name + ".toml"),
                  folder.path());
+}
+
+TEST_CASE("mesh: a file's boundary splines, and hexahedra of its volume with sets", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert cube cube.stl --set length=20", folder.path()).exit_code == 0);
+    const auto run = [&](const std::string& arguments) {
+        const ProgramResult result =
+            run_couture("mesh cube.stl --json " + arguments, folder.path());
+        INFO(result.errors);
+        REQUIRE(result.exit_code == 0);
+        return nlohmann::json::parse(result.output);
+    };
+    const auto surfaces = run("--stage surfaces").at("surfaces");
+    CHECK(surfaces.at("patches") == 6);
+    CHECK(surfaces.at("area").get<double>() == Approx(2400.0));
+    const auto file = io::read_spline_surfaces(folder.path() / "out/cube/cube_surfaces.xml");
+    REQUIRE(file);
+    CHECK(file->size() == 6);
+    const Vector3 middle = Vector3::Constant(10.0);
+    for (const auto& surface : *file) {
+        const MatrixX jacobian = surface.jacobian(Vector2(0.5, 0.5));
+        const Vector3 normal = Vector3(jacobian.col(0)).cross(Vector3(jacobian.col(1)));
+        CHECK(normal.dot(Vector3(surface.point(Vector2(0.5, 0.5))) - middle) > 0.0);
+    }
+
+    const auto hexes = run("--stage hexes --points 4");
+    CHECK(hexes.at("hexes").at("elements") == 27);
+    CHECK(hexes.at("hexes").at("certificate") == "valid");
+    CHECK(hexes.at("hexes").at("min_scaled_jacobian").get<double>() == Approx(1.0));
+    const std::string inp = io::read_text(folder.path() / "out/cube/cube_hexes.inp");
+    CHECK_THAT(inp, Catch::Contains("*ELEMENT, TYPE=C3D8") && Catch::Contains("NSET=FACE_1"));
+    CHECK(fs::exists(folder.path() / "out/cube/cube_hexes.vtu"));
 }
 
 TEST_CASE("mesh: vessels and chambers of the heart become valid volumes", "[drivers]") {
