@@ -150,7 +150,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     "length of a spline element (default: a twentieth of the diagonal)");
     sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
     sub->add_option("--layout", mesh->layout,
-                    "a coarse mesh of cuboids (.mesh, .vtk) that lies about where the solid does: "
+                    "a coarse mesh of cuboids (.mesh, .vtk, or .toml: nodes and cuboids by "
+                    "hand) that lies about where the solid does: "
                     "it is placed on the surface instead of templates")
         ->check(CLI::ExistingFile);
     sub->add_option(

@@ -73,6 +73,44 @@ TEST_CASE("mesh: a file's boundary splines, and hexahedra of its volume with set
     CHECK(fs::exists(folder.path() / "out/cube/cube_hexes.vtu"));
 }
 
+TEST_CASE("mesh: a layout written by hand is drawn and filled, bad ones are refused", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& middle) {
+        io::write_text(folder.path() / "two.toml",
+                       "[nodes]\n"
+                       "a = \"x_low-y_low-z_low\"\nb = \"x_low-y_high-z_low\"\n"
+                       "c = \"x_low-y_low-z_high\"\nd = \"x_low-y_high-z_high\"\n"
+                       "e = [40, 0, 0.5]\nf = [40, 100, 0]\ng = " +
+                           middle +
+                           "\nh = [40, 100, 100]\n"
+                           "i = [100, 0, 0]\nj = [100, 100, 0]\nk = [100, 0, 100]\n"
+                           "l = [100, 100, 100]\n"
+                           "[[cuboid]]\nnodes = ['a', 'e', 'b', 'f', 'c', 'g', 'd', 'h']\n"
+                           "[[cuboid]]\nnodes = ['e', 'i', 'f', 'j', 'g', 'k', 'h', 'l']\n");
+        io::write_text(folder.path() / "job.toml",
+                       "[geometry]\npart = \"cube\"\n[meshing]\nstage = \"volume\"\n"
+                       "layout = \"two.toml\"\nelement_size = 25\n");
+    };
+    write("[40, 0, 100]");
+    const ProgramResult result = run_couture("mesh --json job.toml", folder.path());
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    const auto volume = nlohmann::json::parse(result.output).at("volume");
+    CHECK(volume.at("patches") == 2);
+    CHECK(volume.at("certificate") == "valid");
+    CHECK(volume.at("min_scaled_jacobian") > 0.95);
+    const auto refused = [&](const std::string& middle, const std::string& message) {
+        write(middle);
+        const ProgramResult bad = run_couture("mesh job.toml --stage layout", folder.path());
+        CHECK(bad.exit_code == 2);
+        CHECK_THAT(bad.errors, Catch::Contains(message));
+    };
+    refused("[40, -20, 100]", "node 'g' at (40, -20, 100) lies 20 from the surface");
+    refused("[0.5, 0, 100]", "nodes 'c' and 'g' both come to (0, 0, 100)");
+    refused("\"x_mid\"", "node 'g' lies at the corner 'x_mid', which the part does not have");
+    refused("[40, 50, 50]", "from the surface, which is more than 'tolerance'");
+}
+
 TEST_CASE("mesh: vessels and chambers of the heart become valid volumes", "[drivers]") {
     const auto data = test::data_folder();
     if (!data) return;
