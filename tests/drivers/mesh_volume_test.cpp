@@ -89,7 +89,7 @@ TEST_CASE("mesh: a layout written by hand is drawn and filled, bad ones are refu
                            "[[cuboid]]\nnodes = ['e', 'i', 'f', 'j', 'g', 'k', 'h', 'l']\n");
         io::write_text(folder.path() / "job.toml",
                        "[geometry]\npart = \"cube\"\n[meshing]\nstage = \"volume\"\n"
-                       "layout = \"two.toml\"\nelement_size = 25\n");
+                       "layout = \"two.toml\"\nelement_size = 20\n");
     };
     write("[40, 0, 100]");
     const ProgramResult result = run_couture("mesh --json job.toml", folder.path());
