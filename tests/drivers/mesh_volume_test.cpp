@@ -64,13 +64,25 @@ TEST_CASE("mesh: a file's boundary splines, and hexahedra of its volume with set
         CHECK(normal.dot(Vector3(surface.point(Vector2(0.5, 0.5))) - middle) > 0.0);
     }
 
-    const auto hexes = run("--stage hexes --points 4");
+    const auto hexes = run("--stage hexes --points 4 --element-size 10");
     CHECK(hexes.at("hexes").at("elements") == 27);
     CHECK(hexes.at("hexes").at("certificate") == "valid");
     CHECK(hexes.at("hexes").at("min_scaled_jacobian").get<double>() == Approx(1.0));
     const std::string inp = io::read_text(folder.path() / "out/cube/cube_hexes.inp");
     CHECK_THAT(inp, Catch::Contains("*ELEMENT, TYPE=C3D8") && Catch::Contains("NSET=FACE_1"));
     CHECK(fs::exists(folder.path() / "out/cube/cube_hexes.vtu"));
+
+    // A deck loads the smooth faces of the file.
+    io::write_text(folder.path() / "load.toml",
+                   "[geometry]\nfile = \"out/cube/cube_volume.xml\"\n"
+                   "[material.steel]\nyoungs_modulus = 210e3\npoissons_ratio = 0.3\n"
+                   "[[symmetry]]\non = [\"face_1\", \"face_3\", \"face_5\"]\n"
+                   "[[pressure]]\non = \"face_6\"\nvalue = 10.0\n"
+                   "[[output.probe]]\nat = [5, 5, 5]\nquantity = \"stress_zz\"\n"
+                   "expect = -10.0\ntolerance = 1e-6\n");
+    const ProgramResult solved = run_couture("solve load.toml", folder.path());
+    INFO(solved.errors);
+    CHECK(solved.exit_code == 0);
 }
 
 TEST_CASE("mesh: a layout written by hand is drawn and filled, bad ones are refused", "[drivers]") {
