@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "drivers/hash.h"
 #include "drivers/mesh_stages.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "iga/topology/space.h"
 #include "io/family_members.h"
@@ -281,7 +281,7 @@ int mesh_family(const io::MeshDeck& deck, const MeshOptions& options, const Comm
     const Timer timer;
     Family family(deck, folder, name, options.png,
                   fmt::format("couture {} mesh {}; deck hash {}", COUTURE_VERSION, options.surface,
-                              fnv_hash(deck.text)));
+                              text_hash(deck.text)));
     family.run();
     const double seconds = timer.seconds();
     const auto& results = family.results();

@@ -12,12 +12,14 @@
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/did_you_mean.h"
+#include "io/named_layout_file.h"
 #include "io/pants_file.h"
 #include "io/picture.h"
 #include "io/surface_writer.h"
 #include "io/template_file.h"
 #include "io/volumetric_layout_file.h"
 #include "meshing/layout/place_layout.h"
+#include "meshing/layout/snap_nodes.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 #include "meshing/surface/cut_surface.h"
@@ -29,8 +31,9 @@ namespace {
 
 using namespace meshing;
 
-constexpr std::array<const char*, 9> stage_names{"surface", "features", "loops", "pants", "layout",
-                                                 "field",   "map",      "quads", "volume"};
+constexpr std::array<const char*, 11> stage_names{"surface",  "features", "loops", "pants",
+                                                  "layout",   "field",    "map",   "quads",
+                                                  "surfaces", "volume",   "hexes"};
 
 // Weight of sharp edges in the criterion of cycles if the deck gives none and cuboids are to
 // follow: cuts cross them.
@@ -205,8 +208,23 @@ io::Scene make_curvature_scene(SurfaceMesh mesh) {
     return scene;
 }
 
+// A layout that was written by hand.
+CuboidDecomposition place_named(const io::MeshDeck& deck, const MeshStages& stages,
+                                const Landmarks& landmarks) {
+    const io::NamedLayout layout =
+        io::read_named_layout(deck.layout, landmarks.corners, deck.units);
+    constexpr double relative_tolerance = 0.01;
+    const double tolerance =
+        layout.tolerance.value_or(relative_tolerance * bounding_box_diagonal(stages.mesh));
+    SurfaceMesh mesh = stages.mesh;
+    const PlacedLayout placed =
+        snap_nodes(mesh, stages.features, layout.placed, layout.names, tolerance);
+    return place_layout(mesh, stages.features, placed, tolerance);
+}
+
 // The deck's own layout, placed on the surface. Warns of features that it leaves out.
-CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages) {
+CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages,
+                                   const Landmarks& landmarks) {
     if (stages.invariants.n_boundaries > 0) {
         throw InputError(
             "mesh: a layout of one's own ([meshing] layout, --layout) needs a closed surface, this "
@@ -214,7 +232,9 @@ CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& s
             stages.invariants.n_boundaries);
     }
     CuboidDecomposition cuboids =
-        place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
+        deck.layout.extension() == ".toml"
+            ? place_named(deck, stages, landmarks)
+            : place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
     double length = 0.0;
     for (const FeatureCurve& curve : stages.features.curves) length += curve.length;
     const double untied = untied_length(cuboids);
@@ -307,7 +327,7 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     if (last > MeshStage::pants) solid.last = solid_stage(last);
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
-        stages.solid = mesh_solid(placed_cuboids(deck, stages), solid);
+        stages.solid = mesh_solid(placed_cuboids(deck, stages, surface.landmarks), solid);
         return stages;
     }
     std::optional<ClosingCaps> caps = surface.caps;

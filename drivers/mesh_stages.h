@@ -16,7 +16,19 @@
 namespace couture::drivers {
 
 /// The stages of meshing, in order.
-enum class MeshStage { surface, features, loops, pants, layout, field, map, quads, volume };
+enum class MeshStage {
+    surface,
+    features,
+    loops,
+    pants,
+    layout,
+    field,
+    map,
+    quads,
+    surfaces,
+    volume,
+    hexes
+};
 
 /// @throws InputError  for a name that is no stage: names the nearest and lists all
 [[nodiscard]] MeshStage read_mesh_stage(const std::string& name);

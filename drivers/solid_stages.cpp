@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "drivers/hex_files.h"
 #include "iga/topology/space.h"
 #include "io/obj_surface.h"
 #include "io/picture.h"
@@ -222,11 +223,20 @@ io::Scene field_scene(const SolidMesh& solid) {
     return scene;
 }
 
+// With lines between elements.
+template <int d>
+io::Scene element_scene(const iga::MultiPatch<d>& multipatch) {
+    io::SceneOptions options;
+    options.element_lines = true;
+    return io::make_scene(iga::Space<d>(multipatch), options);
+}
+
 }  // namespace
 
 std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& solid,
                                         SolidStage stage, bool png, const std::string& provenance) {
     if (stage == SolidStage::field && !solid.field) return {};
+    if (stage == SolidStage::surfaces && !solid.surfaces) return {};
     std::vector<fs::path> files;
     io::Scene scene;
     if (stage <= SolidStage::map) {
@@ -255,13 +265,17 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
         files.push_back(with_extension(stem, ".obj"));
         io::write_obj(files.back(), quads, provenance);
         scene = quad_scene(*solid.quads);
-    } else {
+    } else if (stage == SolidStage::surfaces) {
+        files.push_back(with_extension(stem, ".xml"));
+        io::write_splines(files.back(), solid.surfaces->surfaces);
+        scene = element_scene(solid.surfaces->surfaces);
+    } else if (stage == SolidStage::volume) {
         files.push_back(with_extension(stem, ".xml"));
         io::write_splines(files.back(), solid.volume->volume);
-        const iga::Space<3> space(solid.volume->volume);
-        io::SceneOptions options;
-        options.element_lines = true;
-        scene = io::make_scene(space, options);
+        scene = element_scene(solid.volume->volume);
+    } else {
+        files = write_hexahedra(stem, *solid.hexes, provenance).files;
+        scene = element_scene(solid.hexes->hexahedra);
     }
     if (png && stage != SolidStage::map) {
         files.push_back(with_extension(stem, ".png"));

@@ -11,9 +11,10 @@ namespace couture::drivers {
 /// Writes what a stage shows: STEM.vtp (layout and map: the surface with the number of its quad on
 /// each triangle and arcs as curves, kind 6, along sharp edges 7; field: also the four directions
 /// of its cross and, on the points, indices of singularities in quarter turns; quads: the quads,
-/// also as STEM.obj) or STEM.xml (the volume), and with `png` STEM.png.
+/// also as STEM.obj), STEM.xml (the boundary's surfaces, the volume) or what write_hexahedra does,
+/// and with `png` STEM.png.
 ///
-/// @return the files; none of a field that was not made
+/// @return the files; none of a field or surfaces that were not made
 /// @throws FileError  if one can't be written
 std::vector<std::filesystem::path> write_solid_stage(const std::filesystem::path& stem,
                                                      const meshing::SolidMesh& solid,

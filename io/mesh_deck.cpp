@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <numbers>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
@@ -16,8 +15,6 @@ namespace couture::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 void read_existing_file(Section& section, const std::string& key, const fs::path& folder,
                         fs::path& path) {
@@ -122,7 +119,7 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     meshing::PantsOptions& pants = deck.pants;
     deck.stage = section
                      .choice("stage", {"surface", "features", "loops", "pants", "layout", "field",
-                                       "map", "quads", "volume"})
+                                       "map", "quads", "surfaces", "volume", "hexes"})
                      .value_or(deck.stage);
     deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
     if (deck.edge_length > 0.0 && deck.part.empty()) {
@@ -135,12 +132,9 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     deck.shell = section.integer("shell", 0, most_shells);
     constexpr double flat = 180.0;
     const Range angles{.low = 0.0, .high = flat, .is_open = true};
-    if (const auto angle = section.number("feature_angle", dimensions::none, angles)) {
-        deck.features.angle = *angle * degree;
-    }
-    if (const auto angle = section.number("corner_angle", dimensions::none, angles)) {
-        deck.features.corner_angle = *angle * degree;
-    }
+    deck.features.angle = section.angle("feature_angle", angles).value_or(deck.features.angle);
+    deck.features.corner_angle =
+        section.angle("corner_angle", angles).value_or(deck.features.corner_angle);
     read_open(section, deck.open);
     read_criterion(section, "cycle", pants.cycle);
     read_criterion(section, "merge", pants.merge);
@@ -189,6 +183,8 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
                         "'alignment' draws the optimised map to the cross field; it has no place "
                         "beside parameterization = \"harmonic\"");
     }
+    constexpr int most_points = 1000;
+    solid.n_points = section.integer("points", 2, most_points);
     read_existing_file(section, "templates", folder, deck.templates);
     read_existing_file(section, "layout", folder, deck.layout);
     read_existing_file(section, "like", folder, deck.like);

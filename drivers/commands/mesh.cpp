@@ -7,14 +7,15 @@
 #include <numbers>
 
 #include "drivers/commands/commands.h"
-#include "drivers/hash.h"
 #include "drivers/mesh_family.h"
 #include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
+#include "iga/topology/element_quality.h"
 #include "io/mesh_deck.h"
 #include "io/spline_file.h"
 #include "meshing/surface/curvature_clusters.h"
@@ -72,6 +73,9 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             if (!options.stage.empty()) {
                 all.push_back(fmt::format("meshing.stage=\"{}\"", options.stage));
             }
+            if (options.n_points) {
+                all.push_back(fmt::format("meshing.points={}", *options.n_points));
+            }
             return all;
         };
         const bool has_more =
@@ -82,7 +86,8 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             options.fix || options.fill_holes || options.shell;
         if (has_more) {
             throw InputError(
-                "mesh: with a deck only --stage, --set, --out and --png are options; write the "
+                "mesh: with a deck only --stage, --points, --set, --out and --png are options; "
+                "write the "
                 "others into its section [meshing], or --set meshing.KEY=VALUE");
         }
         return io::read_mesh_deck(options.surface, overrides());
@@ -135,6 +140,7 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     }
     deck.solid.element_size = options.element_size;
     deck.solid.volume.degree = options.degree.value_or(deck.solid.volume.degree);
+    deck.solid.n_points = options.n_points;
     deck.layout = options.layout;
     deck.like = options.like;
     if (!deck.layout.empty() && !deck.like.empty()) {
@@ -157,9 +163,28 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     return deck;
 }
 
-bool is_certified(const meshing::SolidMesh& solid) {
-    return !solid.volume ||
-           solid.volume->report.parameterization.validity <= iga::Validity::degenerate;
+// The certificate of the last stage that has one.
+const meshing::ParameterizationReport* certificate(const meshing::SolidMesh& solid) {
+    if (solid.hexes) return &solid.hexes->report;
+    return solid.volume ? &solid.volume->report.parameterization : nullptr;
+}
+
+// What is not positive everywhere, or empty.
+std::string failure(const MeshStages& stages) {
+    const auto* report = stages.solid ? certificate(*stages.solid) : nullptr;
+    if (report == nullptr || report->validity <= iga::Validity::degenerate) return "";
+    return fmt::format("the {} {}: det J is not positive everywhere in patch {}",
+                       stages.solid->hexes ? "hexahedra are" : "volume is",
+                       iga::to_string(report->validity), report->worst_patch);
+}
+
+int n_hexahedra(const iga::MultiPatch<3>& hexahedra) {
+    int n = 0;
+    for (const auto& patch : hexahedra.patches) {
+        const auto [a, b, c] = patch.space().n_elements();
+        n += a * b * c;
+    }
+    return n;
 }
 
 void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) {
@@ -177,6 +202,14 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                            {"mean_scaled_jacobian", solid.quad_quality->mean_scaled_jacobian},
                            {"hausdorff", solid.quad_quality->hausdorff_distance}};
     }
+    if (solid.surfaces) {
+        const auto& [surfaces, report] = *solid.surfaces;
+        object["surfaces"] = {{"patches", surfaces.n_patches()},
+                              {"control_points", surfaces.n_control_points()},
+                              {"area", iga::volume(surfaces)},
+                              {"max_distance", report.max_distance},
+                              {"rms_distance", report.rms_distance}};
+    }
     if (!solid.volume) return;
     const auto& report = solid.volume->report;
     object["volume"] = {{"patches", solid.volume->volume.n_patches()},
@@ -187,6 +220,12 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                         {"mean_scaled_jacobian", report.quality.mean_scaled_jacobian},
                         {"hausdorff", solid.distance->surface},
                         {"hausdorff_features", solid.distance->features}};
+    if (!solid.hexes) return;
+    const auto quality = iga::element_quality(solid.hexes->hexahedra);
+    object["hexes"] = {{"elements", n_hexahedra(solid.hexes->hexahedra)},
+                       {"certificate", iga::to_string(solid.hexes->report.validity)},
+                       {"min_scaled_jacobian", quality.min_scaled_jacobian},
+                       {"mean_scaled_jacobian", quality.mean_scaled_jacobian}};
 }
 
 void add_pants(const MeshStages& stages, nlohmann::ordered_json& object) {
@@ -294,6 +333,11 @@ void print_solid(const meshing::SolidMesh& solid) {
             quality.smallest_scaled_jacobian, quality.mean_scaled_jacobian,
             quality.hausdorff_distance);
     }
+    if (solid.surfaces) {
+        const auto& [surfaces, report] = *solid.surfaces;
+        fmt::print("surfaces  {} patches, {} control points; {:.4g} from the surface at most\n",
+                   surfaces.n_patches(), surfaces.n_control_points(), report.max_distance);
+    }
     if (!solid.volume) return;
     const auto& report = solid.volume->report;
     fmt::print(
@@ -302,6 +346,11 @@ void print_solid(const meshing::SolidMesh& solid) {
         solid.volume->volume.n_patches(), solid.volume->volume.n_control_points(),
         iga::to_string(report.parameterization.validity), report.quality.min_scaled_jacobian,
         report.quality.mean_scaled_jacobian, solid.distance->surface, solid.distance->features);
+    if (!solid.hexes) return;
+    const auto quality = iga::element_quality(solid.hexes->hexahedra);
+    fmt::print("hexes     {} hexahedra; det J {}, scaled Jacobian from {:.3f}, mean {:.3f}\n",
+               n_hexahedra(solid.hexes->hexahedra), iga::to_string(solid.hexes->report.validity),
+               quality.min_scaled_jacobian, quality.mean_scaled_jacobian);
 }
 
 void print_pants(const MeshStages& stages, MeshStage last) {
@@ -336,11 +385,11 @@ void print_text(const MeshStages& stages, MeshStage last) {
 
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     if (io::is_spline_file(options.surface)) return mesh_splines(options, common);
-    if (options.n_points) {
-        throw InputError("mesh: --points is for spline files with --stage hexes; {} is none",
-                         options.surface);
-    }
     const io::MeshDeck deck = deck_of(options);
+    if (deck.solid.n_points && deck.stage != "hexes") {
+        throw InputError("mesh: {} points are for stage hexes, which samples them, not for {}",
+                         *deck.solid.n_points, deck.stage);
+    }
     if (deck.family) return mesh_family(deck, options, common);
     const MeshStage last = read_mesh_stage(deck.stage);
 
@@ -350,16 +399,12 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     const Timer timer;
     const MeshStages stages = run_mesh_stages(deck, folder / (name + "_problems.vtp"));
     const double seconds = timer.seconds();
-    const bool is_done = !stages.solid || is_certified(*stages.solid);
-    if (!is_done) {
-        log::warn(
-            fmt::format("the volume is {}: det J is not positive everywhere in patch {}",
-                        iga::to_string(stages.solid->volume->report.parameterization.validity),
-                        stages.solid->volume->report.parameterization.worst_patch));
-    }
+    const std::string not_positive = failure(stages);
+    const bool is_done = not_positive.empty();
+    if (!is_done) log::warn(not_positive);
     const std::string provenance =
         fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
-                    deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));
+                    deck.text.empty() ? "" : fmt::format("; deck hash {}", text_hash(deck.text)));
     std::vector<std::string> files;
     for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
         const auto which = static_cast<MeshStage>(stage);

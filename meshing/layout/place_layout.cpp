@@ -89,8 +89,10 @@ class Placer {
     }
 
     // Ties along features.
-    std::vector<LayoutTie> follow_features(const Features& features) {
-        split_long_edges(mesh_, edge_part * bounding_box_diagonal(mesh_));
+    std::vector<LayoutTie> follow_features(const Features& features, double most_reach) {
+        const double longest_edge = edge_part * bounding_box_diagonal(mesh_);
+        split_long_edges(mesh_, longest_edge);
+        for (double& r : reach_) r = std::min(r, std::max(most_reach, longest_edge));
         node_of_vertex_.assign(mesh_.n_vertices(), -1);
         place_on_corners(features);
         place_on_curves();
@@ -509,7 +511,7 @@ std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
 }  // namespace
 
 CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& features,
-                                 const PlacedLayout& placed) {
+                                 const PlacedLayout& placed, double most_reach) {
     const LayoutBoundary boundary = layout_boundary(placed.layout);
     const int chi = static_cast<int>(mesh.n_vertices()) - static_cast<int>(mesh.n_edges()) +
                     static_cast<int>(mesh.n_faces());
@@ -522,7 +524,7 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     CuboidDecomposition result;
     result.mesh = mesh;
     std::vector<LayoutTie> feature_ties =
-        Placer(result.mesh, boundary.layout, placed.positions).follow_features(features);
+        Placer(result.mesh, boundary.layout, placed.positions).follow_features(features, most_reach);
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::vector<bool> is_held(result.mesh.n_vertices(), false);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "meshing/layout/cuboid_decomposition.h"
 #include "meshing/layout/volumetric_layout.h"
 
@@ -19,12 +21,14 @@ namespace couture::meshing {
 ///
 /// @param mesh      closed, with numbers of features on its edges
 /// @param features  its own
+/// @param most_reach  no node moves farther to a feature, but for the length of an edge
 /// @return templates empty; sets are those of the layout
 /// @throws TopologyError  if surface and layout have different Euler characteristics, or no feature
 ///                        of the surface runs along arcs of the layout
 /// @throws TopologyError, GeometryError  if an arc can't be drawn: names its nodes
-[[nodiscard]] CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& features,
-                                               const PlacedLayout& placed);
+[[nodiscard]] CuboidDecomposition place_layout(
+    const SurfaceMesh& mesh, const Features& features, const PlacedLayout& placed,
+    double most_reach = std::numeric_limits<double>::infinity());
 
 /// Length of the feature edges of a decomposition's mesh that lie on no arc.
 [[nodiscard]] double untied_length(const CuboidDecomposition& decomposition);

@@ -30,6 +30,10 @@ void check_options(const SolidMeshOptions& options) {
         throw InputError("mesh: {} samples per element; splines need 2 or more",
                          options.samples_per_element);
     }
+    if (options.n_points && *options.n_points < 2) {
+        throw InputError("mesh: {} points per direction; hexahedra need 2 or more",
+                         *options.n_points);
+    }
 }
 
 // Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
@@ -102,15 +106,27 @@ void make_quads(SolidMesh& solid) {
     solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), mesh);
 }
 
-LayoutVolume fit_volume(const SolidMesh& solid, const SolidMeshOptions& options,
-                        const ParameterizationOptions& parameterization) {
+LayoutVolumeOptions volume_options(const SolidMesh& solid, const SolidMeshOptions& options) {
     LayoutVolumeOptions volume = options.volume;
     volume.n_elements = solid.cuboids.record.elements;
+    return volume;
+}
+
+LayoutSamples fine_samples(const SolidMesh& solid, const SolidMeshOptions& options) {
+    return refine_samples(solid.cuboids.mesh, solid.cuboids.surface, *solid.quads,
+                          options.samples_per_element);
+}
+
+LayoutSurfaces fit_surfaces(const SolidMesh& solid, const SolidMeshOptions& options) {
+    return make_layout_surfaces(solid.cuboids.volume, fine_samples(solid, options),
+                                volume_options(solid, options));
+}
+
+LayoutVolume fit_volume(const SolidMesh& solid, const SolidMeshOptions& options,
+                        const ParameterizationOptions& parameterization) {
+    LayoutVolumeOptions volume = volume_options(solid, options);
     volume.parameterization = parameterization;
-    return make_layout_volume(solid.cuboids.volume,
-                              refine_samples(solid.cuboids.mesh, solid.cuboids.surface,
-                                             *solid.quads, options.samples_per_element),
-                              volume);
+    return make_layout_volume(solid.cuboids.volume, fine_samples(solid, options), volume);
 }
 
 double mean_edge_length(const SurfaceMesh& mesh) {
@@ -221,9 +237,18 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
         if (!adds_elements || round == max_rounds || !add_elements(solid, cells, options)) break;
     }
 
+    if (options.last == SolidStage::surfaces) {
+        say("fitting splines");
+        solid.surfaces = fit_surfaces(solid, options);
+        return solid;
+    }
     say("fitting splines and filling the volume");
     solid.volume = fit_volume(solid, options, options.volume.parameterization);
     solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
+    if (options.last == SolidStage::volume) return solid;
+
+    say("sampling hexahedra");
+    solid.hexes = sample_hexahedra(solid.volume->volume, options.n_points);
     return solid;
 }
 

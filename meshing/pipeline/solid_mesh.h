@@ -14,12 +14,13 @@
 #include "meshing/parameterization/sample_quality.h"
 #include "meshing/pipeline/outer_side_names.h"
 #include "meshing/pipeline/volume_distance.h"
+#include "meshing/volume/hex_sampling.h"
 #include "meshing/volume/layout_volume.h"
 
 namespace couture::meshing {
 
-/// The stages from cuboids to a volume, in order.
-enum class SolidStage { layout, field, map, quads, volume };
+/// The stages from cuboids to a volume and its hexahedra, in order.
+enum class SolidStage { layout, field, map, quads, surfaces, volume, hexes };
 
 struct SolidMeshOptions {
     /// The last stage that is run.
@@ -45,6 +46,9 @@ struct SolidMeshOptions {
     int samples_per_element = 4;
     /// Its numbers of elements are not read.
     LayoutVolumeOptions volume = {};
+    /// Of the hexahedra in each cuboid, per direction, at least 2; nothing: as many as control
+    /// points.
+    std::optional<int> n_points = {};
     /// Called with what is being done; may throw to stop.
     std::function<void(std::string_view)> progress = {};
 };
@@ -60,12 +64,15 @@ struct SolidMesh {
     std::optional<LayoutSamples> quads;
     std::optional<NodeRelocationReport> relocation;
     std::optional<QuadQuality> quad_quality;
+    /// Only if they are the last stage: later ones make them again.
+    std::optional<LayoutSurfaces> surfaces;
     std::optional<LayoutVolume> volume;
     std::optional<VolumeDistance> distance;
+    std::optional<SampledHexahedra> hexes;
 };
 
 /// From a solid's cuboids to trivariate splines: cross field, aligned global map, quads whose nodes
-/// have moved to better places, splines.
+/// have moved to better places, splines, hexahedra.
 ///
 /// @param cuboids  of decompose_into_cuboids, repeat_cuboids or place_layout; numbers of elements
 ///                 and names of sides that its record has are kept

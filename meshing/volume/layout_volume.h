@@ -20,14 +20,18 @@ struct LayoutVolumeOptions {
     bool slide_boundary = false;
 };
 
-struct LayoutVolumeReport {
-    int euler_characteristic = 0;
-    /// Distances of the samples from the boundary's splines before it slides: largest, the arc or
-    /// quad of the samples that has it (quad -1: the arc), and root of the mean square.
+/// Distances of the samples from the boundary's splines before it slides.
+struct LayoutFitReport {
+    /// The largest, and the arc or quad of the samples that has it (quad -1: the arc).
     double max_distance = 0.0;
     int worst_arc = -1;
     int worst_quad = -1;
+    /// Root of the mean square.
     double rms_distance = 0.0;
+};
+
+struct LayoutVolumeReport : LayoutFitReport {
+    int euler_characteristic = 0;
     ParameterizationReport parameterization;
     iga::QualitySummary<3> quality;
 };
@@ -36,6 +40,19 @@ struct LayoutVolume {
     iga::MultiPatch<3> volume;
     LayoutVolumeReport report;
 };
+
+struct LayoutSurfaces {
+    /// In the order of the samples' quads, normals outwards; no interfaces.
+    iga::MultiPatch<2> surfaces;
+    LayoutFitReport report;
+};
+
+/// The boundary of make_layout_volume alone: one spline surface per quad.
+///
+/// @throws InputError, TopologyError  as make_layout_volume, for the samples
+[[nodiscard]] LayoutSurfaces make_layout_surfaces(const VolumetricLayout& layout,
+                                                  const LayoutSamples& samples,
+                                                  const LayoutVolumeOptions& options = {});
 
 /// One trivariate spline per cuboid of a layout, whose boundary runs near samples of a surface.
 ///

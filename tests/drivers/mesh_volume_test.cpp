@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "io/atomic_file.h"
+#include "io/spline_file.h"
 #include "tests/data_folder.h"
 #include "tests/drivers/run_program.h"
 
@@ -42,6 +44,88 @@ TEST_CASE("mesh: parts of genus 1 to 5 become valid volumes", "[drivers]") {
     const TemporaryFolder folder;
     check_volume(fs::path(COUTURE_SOURCE_DIR) / "drivers/decks" / ("mesh_" + name + ".toml"),
                  folder.path(), most_distance_of_parts);
+}
+
+TEST_CASE("mesh: a file's boundary splines, and hexahedra of its volume with sets", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert cube cube.stl --set length=20", folder.path()).exit_code == 0);
+    const auto run = [&](const std::string& arguments) {
+        const ProgramResult result =
+            run_couture("mesh cube.stl --json " + arguments, folder.path());
+        INFO(result.errors);
+        REQUIRE(result.exit_code == 0);
+        return nlohmann::json::parse(result.output);
+    };
+    const auto surfaces = run("--stage surfaces").at("surfaces");
+    CHECK(surfaces.at("patches") == 6);
+    CHECK(surfaces.at("area").get<double>() == Approx(2400.0));
+    const auto file = io::read_spline_surfaces(folder.path() / "out/cube/cube_surfaces.xml");
+    REQUIRE(file);
+    CHECK(file->size() == 6);
+    const Vector3 middle = Vector3::Constant(10.0);
+    for (const auto& surface : *file) {
+        const MatrixX jacobian = surface.jacobian(Vector2(0.5, 0.5));
+        const Vector3 normal = Vector3(jacobian.col(0)).cross(Vector3(jacobian.col(1)));
+        CHECK(normal.dot(Vector3(surface.point(Vector2(0.5, 0.5))) - middle) > 0.0);
+    }
+
+    const auto hexes = run("--stage hexes --points 4 --element-size 10");
+    CHECK(hexes.at("hexes").at("elements") == 27);
+    CHECK(hexes.at("hexes").at("certificate") == "valid");
+    CHECK(hexes.at("hexes").at("min_scaled_jacobian").get<double>() == Approx(1.0));
+    const std::string inp = io::read_text(folder.path() / "out/cube/cube_hexes.inp");
+    CHECK_THAT(inp, Catch::Contains("*ELEMENT, TYPE=C3D8") && Catch::Contains("NSET=FACE_1"));
+    CHECK(fs::exists(folder.path() / "out/cube/cube_hexes.vtu"));
+
+    // A deck loads the smooth faces of the file.
+    io::write_text(folder.path() / "load.toml",
+                   "[geometry]\nfile = \"out/cube/cube_volume.xml\"\n"
+                   "[material.steel]\nyoungs_modulus = 210e3\npoissons_ratio = 0.3\n"
+                   "[[symmetry]]\non = [\"face_1\", \"face_3\", \"face_5\"]\n"
+                   "[[pressure]]\non = \"face_6\"\nvalue = 10.0\n"
+                   "[[output.probe]]\nat = [5, 5, 5]\nquantity = \"stress_zz\"\n"
+                   "expect = -10.0\ntolerance = 1e-6\n");
+    const ProgramResult solved = run_couture("solve load.toml", folder.path());
+    INFO(solved.errors);
+    CHECK(solved.exit_code == 0);
+}
+
+TEST_CASE("mesh: a layout written by hand is drawn and filled, bad ones are refused", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& middle) {
+        io::write_text(folder.path() / "two.toml",
+                       "[nodes]\n"
+                       "a = \"x_low-y_low-z_low\"\nb = \"x_low-y_high-z_low\"\n"
+                       "c = \"x_low-y_low-z_high\"\nd = \"x_low-y_high-z_high\"\n"
+                       "e = [40, 0, 0.5]\nf = [40, 100, 0]\ng = " +
+                           middle +
+                           "\nh = [40, 100, 100]\n"
+                           "i = [100, 0, 0]\nj = [100, 100, 0]\nk = [100, 0, 100]\n"
+                           "l = [100, 100, 100]\n"
+                           "[[cuboid]]\nnodes = ['a', 'e', 'b', 'f', 'c', 'g', 'd', 'h']\n"
+                           "[[cuboid]]\nnodes = ['e', 'i', 'f', 'j', 'g', 'k', 'h', 'l']\n");
+        io::write_text(folder.path() / "job.toml",
+                       "[geometry]\npart = \"cube\"\n[meshing]\nstage = \"volume\"\n"
+                       "layout = \"two.toml\"\nelement_size = 20\n");
+    };
+    write("[40, 0, 100]");
+    const ProgramResult result = run_couture("mesh --json job.toml", folder.path());
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    const auto volume = nlohmann::json::parse(result.output).at("volume");
+    CHECK(volume.at("patches") == 2);
+    CHECK(volume.at("certificate") == "valid");
+    CHECK(volume.at("min_scaled_jacobian") > 0.95);
+    const auto refused = [&](const std::string& middle, const std::string& message) {
+        write(middle);
+        const ProgramResult bad = run_couture("mesh job.toml --stage layout", folder.path());
+        CHECK(bad.exit_code == 2);
+        CHECK_THAT(bad.errors, Catch::Contains(message));
+    };
+    refused("[40, -20, 100]", "node 'g' at (40, -20, 100) lies 20 from the surface");
+    refused("[0.5, 0, 100]", "nodes 'c' and 'g' both come to (0, 0, 100)");
+    refused("\"x_mid\"", "node 'g' lies at the corner 'x_mid', which the part does not have");
+    refused("[40, 50, 50]", "from the surface, which is more than 'tolerance'");
 }
 
 TEST_CASE("mesh: vessels and chambers of the heart become valid volumes", "[drivers]") {
