@@ -248,14 +248,10 @@ TEST_CASE("layout map: least squares to the field", "[parameterization]") {
     for (std::size_t k = 1; k < sphere.report.energies.size(); ++k) {
         CHECK(sphere.report.energies[k] <= sphere.report.energies[k - 1]);
     }
-    for (const double c : {0.5, 0.7, 0.8, 0.9}) {
-        const LaidOutSurface t = make_sphere_layout(6, Vector3(c, 0.1, 0.0));
-        WARN("sphere " << c << " " << quadratic(t, 0.3).report.n_flipped << " " << map_of(t, 0.3).report.n_flipped);
-    }
-    for (const int c : {2, 4, 8}) {
-        const LaidOutSurface t = make_torus_layout(8, {0, c, 32}, {0, 3, 6});
-        WARN("torus " << c << " " << quadratic(t, 0.2).report.n_flipped << " " << map_of(t, 0.2).report.n_flipped);
-    }
+    // Quads of very different sizes have as many cells: nothing keeps triangles open.
+    const LaidOutSurface uneven = make_sphere_layout(6, Vector3(0.9, 0.1, 0.0));
+    CHECK(quadratic(uneven, 0.3).report.n_flipped > 0);
+    CHECK(map_of(uneven, 0.3).report.n_flipped == 0);
 }
 
 TEST_CASE("layout map: what does not fit is refused", "[parameterization]") {
