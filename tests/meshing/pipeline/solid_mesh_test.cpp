@@ -69,6 +69,12 @@ TEST_CASE("mesh_solid: the three routes of the map", "[pipeline]") {
     CHECK(squares.map->report.mean_angle_to_directions <
           drawn.map->report.mean_angle_to_directions);
     CHECK(squares.mapped_quads.has_value() == (squares.map->report.n_flipped == 0));
+    if (name == "double_t") {
+        REQUIRE(squares.map->report.n_flipped > 0);
+        options.last = SolidStage::quads;
+        CHECK_THROWS_WITH(mesh_solid(cuboids_of(job), options), Catch::Contains("are flipped"));
+        options.last = SolidStage::map;
+    }
     options.route = LayoutMapRoute::harmonic;
     const SolidMesh harmonic = mesh_solid(cuboids_of(job), options);
     CHECK(harmonic.map->report.n_flipped == 0);
