@@ -26,6 +26,10 @@ void check_options(const SolidMeshOptions& options) {
     if (!(options.alignment >= 0.0) || !std::isfinite(options.alignment)) {
         throw InputError("mesh: alignment {}; it must not be negative", options.alignment);
     }
+    if (options.max_relocations < 0) {
+        throw InputError("mesh: {} relocations at most; it must not be negative",
+                         options.max_relocations);
+    }
     if (options.samples_per_element < 2) {
         throw InputError("mesh: {} samples per element; splines need 2 or more",
                          options.samples_per_element);
@@ -88,11 +92,12 @@ void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
 }
 
 // Nodes in better places.
-void make_quads(SolidMesh& solid) {
+void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     const EmbeddedLayout& surface = solid.cuboids.surface;
-    RelocatedSamples relocated =
-        relocate_nodes(mesh, surface, sample_layout_map(mesh, surface, *solid.map));
+    NodeRelocationOptions relocation;
+    relocation.max_iterations = options.max_relocations;
+    RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
             "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
@@ -213,14 +218,16 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
 
     split_layout_chords(mesh, surface);
     LayoutMapOptions map_options;
-    map_options.is_optimised = options.is_aligned;
+    map_options.route = options.route;
     // Nodes move on from here.
     map_options.tolerance = 1e-4;
-    if (options.last == SolidStage::field || options.alignment > 0.0) {
+    if (options.last == SolidStage::field || options.alignment > 0.0 ||
+        options.route == LayoutMapRoute::quadratic) {
         say("making the cross field");
         solid.field = make_layout_field(mesh, surface);
         map_options.alignment_weight = options.alignment;
-        map_options.directions = FaceDirections{solid.field->field.angles};
+        map_options.directions =
+            FaceDirections{chart_directions(mesh, surface, solid.field->field)};
     }
     if (options.last == SolidStage::field) return solid;
 
@@ -230,9 +237,18 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
         say(round == 0 ? "mapping the surface" : "mapping the surface with more elements");
         solid.map = make_layout_map(mesh, surface,
                                     cells_of_surface(surface.layout, cells, elements), map_options);
+        const int n_flipped = solid.map->report.n_flipped;
+        if (n_flipped == 0) solid.mapped_quads = sample_layout_map(mesh, surface, *solid.map);
         if (options.last == SolidStage::map) return solid;
+        if (n_flipped > 0) {
+            throw GeometryError(
+                "mesh: {} triangles of the quadratic map are flipped, so that it has no quads: "
+                "look "
+                "at the stage map, or take parameterization = \"aligned\", which flips none",
+                n_flipped);
+        }
         say("moving nodes");
-        make_quads(solid);
+        make_quads(solid, options);
         if (options.last == SolidStage::quads) return solid;
         if (!adds_elements || round == max_rounds || !add_elements(solid, cells, options)) break;
     }

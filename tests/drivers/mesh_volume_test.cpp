@@ -148,3 +148,27 @@ TEST_CASE("mesh: vessels and chambers of the heart become valid volumes", "[driv
                  : name == "atrium"  ? 4e-3
                                      : most_distance_of_organs);
 }
+
+TEST_CASE("mesh: pictures of all stages and of nodes that move", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "p.toml",
+                   "[geometry]\npart = \"pant\"\n[meshing]\nopen = \"caps\"\nedge_length = 8\n"
+                   "element_size = 20\nstage = \"volume\"\nalignment = 1\nrelocations = 3\n");
+    const ProgramResult result = run_couture("mesh p.toml --png --json --out o", folder.path());
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    const auto object = nlohmann::json::parse(result.output);
+    CHECK(object["map"]["flipped"] == 0);
+    CHECK(object["map"]["angle_to_field"] > 0.0);
+    CHECK(object["field"]["singularities"].size() > 0);
+    const auto& energies = object["quads"]["energy"];
+    REQUIRE(energies.size() >= 2);
+    CHECK(energies.size() <= 4);
+    CHECK(energies.back() < energies.front());
+    for (const char* picture : {"map", "field", "quads", "volume", "stages", "relocation"}) {
+        const fs::path file = folder.path() / "o" / ("p_" + std::string(picture) + ".png");
+        CAPTURE(file.string());
+        REQUIRE(fs::exists(file));
+        CHECK(fs::file_size(file) > 10'000);
+    }
+}
