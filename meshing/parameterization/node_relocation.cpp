@@ -110,43 +110,57 @@ class CellEnergy {
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
 
-    /// @param takes_lengths_only  the sum of squared lengths, which no inverted cell disturbs
-    void assemble(const SurfaceSlide::State& state, bool takes_lengths_only,
-                  NewtonSystem& system) const {
+    void assemble(const SurfaceSlide::State& state, NewtonSystem& system) const {
         system.set_zero();
         const double weight = 1.0 / static_cast<double>(corners_.size());
         for (std::size_t c = 0; c < corners_.size(); ++c) {
             const CellCorner& corner = corners_[c];
             const Matrix<3, 2> plane = tangent_plane(state, corner);
-            const Matrix<2> F = gradient(state, corner);
-            const Matrix<3, 2> edges = scaled_edges(corner);
-            const auto pulled_back = [&](const Matrix<2>& M) {
-                const Matrix<3> of_points = plane * M * edges.transpose();
-                Vector<6> row;
-                for (int i = 0; i < 3; ++i) {
-                    row.segment<2>(2 * i) =
-                        state.directions[corner.points[i]].transpose() * of_points.col(i);
-                }
-                return row;
-            };
-            if (takes_lengths_only) {
-                Matrix<6> hessian = Matrix<6>::Zero();
-                for (int m = 0; m < 4; ++m) {
-                    Matrix<2> unit = Matrix<2>::Zero();
-                    unit(m / 2, m % 2) = 1.0;
-                    const Vector<6> row = pulled_back(unit);
-                    hessian += weight * row * row.transpose();
-                }
-                system.add(static_cast<int>(c), weight * pulled_back(F), hessian);
-                continue;
-            }
-            const SymmetricDirichlet term(F);
+            const SymmetricDirichlet term(gradient(state, corner));
             Matrix<6> hessian = Matrix<6>::Zero();
             for (int m = 0; m < 4; ++m) {
-                const Vector<6> row = pulled_back(term.modes[m]);
+                const Vector<6> row = pulled_back(state, corner, plane * term.modes[m]);
                 hessian.noalias() += (weight * term.eigenvalues[m]) * row * row.transpose();
             }
-            system.add(static_cast<int>(c), weight * pulled_back(term.gradient), hessian);
+            system.add(static_cast<int>(c),
+                       weight * pulled_back(state, corner, plane * term.gradient), hessian);
+        }
+    }
+
+    /// Of the corner with the most.
+    [[nodiscard]] double largest(const SurfaceSlide::State& state) const {
+        double most = 0.0;
+        for (const CellCorner& corner : corners_) {
+            most = std::max(most, symmetric_dirichlet(gradient(state, corner)));
+        }
+        return most;
+    }
+
+    /// The sum of squared lengths, which no inverted cell disturbs, of the corners whose energy is
+    /// not below a limit (inverted ones have an infinite one), and so many rings of cells around
+    /// them; all other points are held.
+    void assemble_lengths(const SurfaceSlide::State& state, double limit, int n_rings,
+                          NewtonSystem& system) const {
+        system.set_zero();
+        // Beside 1 for a point's own stiffness.
+        constexpr double held = 1e8;
+        const std::vector<bool> is_near = near_bad(state, limit, n_rings);
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            const CellCorner& corner = corners_[c];
+            if (!is_near[c]) {
+                system.add(static_cast<int>(c), Vector<6>::Zero(), held * Matrix<6>::Identity());
+                continue;
+            }
+            const Matrix<3, 2> plane = tangent_plane(state, corner);
+            Matrix<6> hessian = Matrix<6>::Zero();
+            for (int m = 0; m < 4; ++m) {
+                Matrix<2> unit = Matrix<2>::Zero();
+                unit(m / 2, m % 2) = 1.0;
+                const Vector<6> row = pulled_back(state, corner, plane * unit);
+                hessian += row * row.transpose();
+            }
+            system.add(static_cast<int>(c),
+                       pulled_back(state, corner, plane * gradient(state, corner)), hessian);
         }
     }
 
@@ -180,6 +194,43 @@ class CellEnergy {
         return corner.edges * corner.lengths.cwiseInverse().asDiagonal() / cell_size_;
     }
 
+    /// The derivatives by its points' directions of what has the derivative M by the edges that the
+    /// wanted cell's become.
+    [[nodiscard]] Vector<6> pulled_back(const SurfaceSlide::State& state, const CellCorner& corner,
+                                        const Matrix<3, 2>& M) const {
+        const Matrix<3> of_points = M * scaled_edges(corner).transpose();
+        Vector<6> row;
+        for (int i = 0; i < 3; ++i) {
+            row.segment<2>(2 * i) =
+                state.directions[corner.points[i]].transpose() * of_points.col(i);
+        }
+        return row;
+    }
+
+    /// Which corners share a point with one whose energy is not below a limit, or with one of
+    /// these, and so on.
+    [[nodiscard]] std::vector<bool> near_bad(const SurfaceSlide::State& state, double limit,
+                                             int n_rings) const {
+        std::vector<bool> is_near(corners_.size());
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            is_near[c] = !(symmetric_dirichlet(gradient(state, corners_[c])) < limit);
+        }
+        for (int ring = 0; ring < n_rings; ++ring) {
+            std::vector<bool> has_point(unknowns_.size(), false);
+            for (std::size_t c = 0; c < corners_.size(); ++c) {
+                for (const int point : corners_[c].points) {
+                    if (is_near[c]) has_point[point] = true;
+                }
+            }
+            for (std::size_t c = 0; c < corners_.size(); ++c) {
+                for (const int point : corners_[c].points) {
+                    if (has_point[point]) is_near[c] = true;
+                }
+            }
+        }
+        return is_near;
+    }
+
     [[nodiscard]] static Matrix<3, 2> tangent_plane(const SurfaceSlide::State& state,
                                                     const CellCorner& corner) {
         const MatrixX& normals = state.normals[corner.quad];
@@ -206,34 +257,72 @@ class CellEnergy {
     double cell_size_ = 1.0;
 };
 
-/// Steps towards short edges until no corner is inverted; false if some are left.
+/// Steps towards short edges around inverted corners, in ever wider rings, until there are none;
+/// false if some are left.
 bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
               SurfaceSlide::State& state) {
-    constexpr int max_steps = 30;
+    constexpr int max_steps = 40;
+    constexpr int steps_per_ring = 4;
     for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
-        energy.assemble(state, true, system);
+        energy.assemble_lengths(state, std::numeric_limits<double>::infinity(),
+                                1 + i / steps_per_ring, system);
         const auto [moves, part] = energy.moves(state, system.step());
         state = slide.placed(state.points + part * moves);
     }
     return energy.n_inverted(state) == 0;
 }
 
+/// The system's step, or the longest of some parts of it with the energy falling.
+///
+/// @return that part; 0 if there is none
+double take_step(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                 SurfaceSlide::State& state) {
+    const auto [moves, longest] = energy.moves(state, system.step());
+    const double start = energy.value(state);
+    constexpr int max_halvings = 12;
+    double part = 1.0;
+    for (int i = 0; i < max_halvings; ++i, part *= 0.5) {
+        SurfaceSlide::State moved = slide.placed(state.points + part * longest * moves);
+        if (energy.value(moved) < start) {
+            state = std::move(moved);
+            return part;
+        }
+    }
+    return 0.0;
+}
+
+/// Evens out the cells around the worst corners, and goes down from there; false if that does not
+/// end below the start.
+bool escape(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+            SurfaceSlide::State& state) {
+    constexpr int max_rings = 3;
+    constexpr int max_steps = 5;
+    const double limit = 0.5 * energy.largest(state);
+    for (int n_rings = 1; n_rings <= max_rings; ++n_rings) {
+        energy.assemble_lengths(state, limit, n_rings, system);
+        const auto [moves, longest] = energy.moves(state, system.step());
+        SurfaceSlide::State moved = slide.placed(state.points + longest * moves);
+        if (energy.n_inverted(moved) > 0) continue;
+        for (int i = 0; i < max_steps; ++i) {
+            energy.assemble(moved, system);
+            if (take_step(energy, slide, system, moved) == 0.0) break;
+        }
+        if (!(energy.value(moved) < energy.value(state))) continue;
+        state = std::move(moved);
+        return true;
+    }
+    return false;
+}
+
 /// One step with the energy falling; false if there is none.
 bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
                SurfaceSlide::State& state) {
-    energy.assemble(state, false, system);
-    const auto [moves, part] = energy.moves(state, system.step());
-    const double start = energy.value(state);
-    constexpr int max_halvings = 12;
-    double t = part;
-    for (int i = 0; i < max_halvings; ++i, t *= 0.5) {
-        SurfaceSlide::State moved = slide.placed(state.points + t * moves);
-        if (energy.value(moved) < start) {
-            state = std::move(moved);
-            return true;
-        }
-    }
-    return false;
+    energy.assemble(state, system);
+    const double part = take_step(energy, slide, system, state);
+    // The planes of cells turn as their points move, which the derivatives leave out: beside nearly
+    // inverted corners they may not lead down.
+    constexpr double stuck = 0.1;
+    return (part < stuck && escape(energy, slide, system, state)) || part > 0.0;
 }
 
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
