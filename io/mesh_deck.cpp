@@ -230,6 +230,7 @@ void read_family(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.mistake("reference", "of a 'design' the deck's own geometry is the reference");
     }
     family.reference = section.text("reference").value_or("");
+    family.members = section.texts("members");
     if (!deck.like.empty()) {
         section.mistake("",
                         "[family] repeats its reference; 'like' of [meshing] has no place "
