@@ -11,6 +11,7 @@
 #include "io/spline_file.h"
 #include "io/surface_writer.h"
 #include "meshing/field/face_frames.h"
+#include "meshing/field/streamline.h"
 #include "meshing/parameterization/sample_grid.h"
 #include "meshing/surface/predicates.h"
 
@@ -207,8 +208,8 @@ io::Scene flipped_scene(const SolidMesh& solid) {
     return scene;
 }
 
-// Crosses, so far apart that each can be seen, on the plain surface; singularities of positive
-// index red, others blue.
+// Lines of the field through points so far apart that each can be seen, on the plain surface;
+// singularities of positive index red, others blue.
 io::Scene field_scene(const SolidMesh& solid) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     io::Scene scene;
@@ -224,15 +225,17 @@ io::Scene field_scene(const SolidMesh& solid) {
             continue;
         }
         centers.push_back(center);
-        constexpr double lift = 0.05;
-        const Vector3 middle = center + lift * spacing * face_normal(mesh, face);
         for (int k = 0; k < 2; ++k) {
-            const double angle = solid.field->field.angles[face.idx()] + 0.5 * std::numbers::pi * k;
-            const Vector3 arm = 0.45 * spacing * frames.direction(face, angle);
-            scene.curves.push_back({.points = rows_of({middle - arm, middle + arm}),
-                                    .is_closed = false,
-                                    .color = {0.12, 0.14, 0.17},
-                                    .width = 1.5});
+            const auto half = [&](int direction) {
+                return trace_streamline(mesh, frames, solid.field->field, face, direction,
+                                        1.5 * spacing);
+            };
+            std::vector<Vector3> line = half(k + 2);
+            std::ranges::reverse(line);
+            const std::vector<Vector3> forwards = half(k);
+            line.insert(line.end(), forwards.begin() + 1, forwards.end());
+            if (line.size() < 2) continue;
+            scene.curves.push_back({.points = rows_of(line), .width = 1.2});
         }
     }
     for (const auto& [vertex, index] : solid.field->topology.singularities) {

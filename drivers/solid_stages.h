@@ -9,7 +9,7 @@
 
 namespace couture::drivers {
 
-/// The picture of a stage that was run: quads of the layout; crosses and singularities of the
+/// The picture of a stage that was run: quads of the layout; streamlines and singularities of the
 /// field (of positive index red, others blue); quads where the map puts them, or its flipped
 /// triangles (red) if there are some; quads; the volume.
 [[nodiscard]] io::Scene solid_scene(const meshing::SolidMesh& solid, meshing::SolidStage stage);
