@@ -165,9 +165,10 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub = add_command(app, command, "info",
                       "say what a spline, surface or hexahedral mesh file holds",
                       [&command, from] { return run_info(*from, command.common); });
-    sub->add_option("file", from->surface,
-                    "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), or the name of "
-                    "a part")
+    sub->add_option(
+           "file", from->surface,
+           "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), a hexahedral mesh "
+           "(.vtk, Medit's .mesh), or the name of a part")
         ->required();
     add_surface_options(sub, *from);
 

@@ -14,7 +14,6 @@
 #include "io/did_you_mean.h"
 #include "io/named_layout_file.h"
 #include "io/pants_file.h"
-#include "io/picture.h"
 #include "io/surface_writer.h"
 #include "io/template_file.h"
 #include "io/volumetric_layout_file.h"
@@ -362,6 +361,16 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     return stages;
 }
 
+io::Scene stage_scene(const MeshStages& stages, MeshStage stage) {
+    if (stage > MeshStage::pants) {
+        io::Scene scene = solid_scene(*stages.solid, solid_stage(stage));
+        scene.title = to_string(stage);
+        return scene;
+    }
+    return stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
+                                       : make_scene(stages, stage, lines_of(stages, stage));
+}
+
 std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
                                                     const MeshStages& stages, MeshStage stage,
                                                     bool png, const std::string& provenance) {
@@ -397,8 +406,7 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (png) {
         std::filesystem::path picture = stem;
         picture += ".png";
-        io::render_png(picture, stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
-                                                            : make_scene(stages, stage, lines));
+        io::render_png(picture, stage_scene(stages, stage));
         files.push_back(picture);
     }
     return files;

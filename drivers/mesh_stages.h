@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "io/picture.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/pipeline/solid_mesh.h"
 #include "meshing/surface/features.h"
@@ -55,6 +56,9 @@ struct MeshStages {
 /// @throws what the stages throw
 [[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck,
                                          const std::filesystem::path& problems_file);
+
+/// The picture of a stage that was run; of the field only if it was made.
+[[nodiscard]] io::Scene stage_scene(const MeshStages& stages, MeshStage stage);
 
 /// Writes what a stage shows as STEM.vtp, and with `png` as STEM.png.
 ///

@@ -7,12 +7,12 @@
 #include "drivers/hex_files.h"
 #include "iga/topology/space.h"
 #include "io/obj_surface.h"
-#include "io/picture.h"
 #include "io/scene.h"
 #include "io/spline_file.h"
 #include "io/surface_writer.h"
 #include "meshing/field/face_frames.h"
 #include "meshing/parameterization/sample_grid.h"
+#include "meshing/surface/predicates.h"
 
 namespace couture::drivers {
 
@@ -52,6 +52,27 @@ std::vector<io::SurfaceLine> arc_lines(const CuboidDecomposition& cuboids) {
     return lines;
 }
 
+// Some triangles of a soup.
+io::SurfacePiece piece_of(const TriangleSoup& soup,
+                          const std::vector<std::array<int, 3>>& triangles) {
+    io::SurfacePiece piece;
+    std::vector<int> number(soup.points.size(), -1);
+    std::vector<Vector3> points;
+    piece.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            int& n = number[triangles[t][k]];
+            if (n < 0) {
+                n = static_cast<int>(points.size());
+                points.push_back(soup.points[triangles[t][k]]);
+            }
+            piece.triangles(static_cast<Eigen::Index>(t), k) = n;
+        }
+    }
+    piece.vertices = rows_of(points);
+    return piece;
+}
+
 // The surface with a colour for each quad.
 io::Scene layout_scene(const CuboidDecomposition& cuboids) {
     io::Scene scene;
@@ -62,21 +83,7 @@ io::Scene layout_scene(const CuboidDecomposition& cuboids) {
         triangles[cuboids.surface.quad_of_face[f]].push_back(soup.triangles[f]);
     }
     for (int q = 0; q < n_quads; ++q) {
-        io::SurfacePiece piece;
-        std::vector<int> number(soup.points.size(), -1);
-        std::vector<Vector3> points;
-        piece.triangles.resize(static_cast<Eigen::Index>(triangles[q].size()), 3);
-        for (std::size_t t = 0; t < triangles[q].size(); ++t) {
-            for (int k = 0; k < 3; ++k) {
-                int& n = number[triangles[q][t][k]];
-                if (n < 0) {
-                    n = static_cast<int>(points.size());
-                    points.push_back(soup.points[triangles[q][t][k]]);
-                }
-                piece.triangles(static_cast<Eigen::Index>(t), k) = n;
-            }
-        }
-        piece.vertices = rows_of(points);
+        io::SurfacePiece piece = piece_of(soup, triangles[q]);
         piece.color = io::part_color(q);
         scene.surfaces.push_back(std::move(piece));
     }
@@ -180,20 +187,39 @@ io::SurfacePiece marker(const Vector3& center, double radius, const io::Color& c
     return piece;
 }
 
+const io::Color red{0.84, 0.15, 0.16};
+
+// The surface with the flipped triangles of its map.
+io::Scene flipped_scene(const SolidMesh& solid) {
+    const TriangleSoup soup = to_soup(solid.cuboids.mesh);
+    std::vector<std::array<int, 3>> good;
+    std::vector<std::array<int, 3>> flipped;
+    for (std::size_t f = 0; f < soup.triangles.size(); ++f) {
+        const auto& [a, b, c] = solid.map->corners[f];
+        (orientation(a, b, c) > 0 ? good : flipped).push_back(soup.triangles[f]);
+    }
+    io::Scene scene;
+    scene.surfaces = {piece_of(soup, good), piece_of(soup, flipped)};
+    scene.surfaces[1].color = red;
+    for (const io::SurfaceLine& line : arc_lines(solid.cuboids)) {
+        scene.curves.push_back({.points = rows_of(line.points), .width = 1.5});
+    }
+    return scene;
+}
+
+io::Scene volume_scene(const iga::MultiPatch<3>& volume) {
+    io::SceneOptions options;
+    options.element_lines = true;
+    return io::make_scene(iga::Space<3>(volume), options);
+}
+
 // Crosses, so far apart that each can be seen, on the plain surface; singularities of positive
 // index red, others blue.
 io::Scene field_scene(const SolidMesh& solid) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     io::Scene scene;
     const TriangleSoup soup = to_soup(mesh);
-    io::SurfacePiece piece;
-    piece.vertices = rows_of(soup.points);
-    piece.triangles.resize(static_cast<Eigen::Index>(soup.triangles.size()), 3);
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        const auto& [a, b, c] = soup.triangles[t];
-        piece.triangles.row(static_cast<Eigen::Index>(t)) << a, b, c;
-    }
-    scene.surfaces.push_back(std::move(piece));
+    scene.surfaces.push_back(piece_of(soup, soup.triangles));
     const double spacing = bounding_box_diagonal(mesh) / 50.0;
     const FaceFrames frames(mesh);
     std::vector<Vector3> centers;
@@ -216,8 +242,7 @@ io::Scene field_scene(const SolidMesh& solid) {
         }
     }
     for (const auto& [vertex, index] : solid.field->topology.singularities) {
-        const io::Color color =
-            index > 0 ? io::Color{0.84, 0.15, 0.16} : io::Color{0.10, 0.35, 0.80};
+        const io::Color color = index > 0 ? red : io::Color{0.10, 0.35, 0.80};
         scene.surfaces.push_back(marker(mesh.point(VertexHandle(vertex)), 0.5 * spacing, color));
     }
     return scene;
@@ -233,12 +258,30 @@ io::Scene element_scene(const iga::MultiPatch<d>& multipatch) {
 
 }  // namespace
 
+io::Scene solid_scene(const SolidMesh& solid, SolidStage stage) {
+    switch (stage) {
+        case SolidStage::field:
+            return field_scene(solid);
+        case SolidStage::map:
+            return solid.mapped_quads ? quad_scene(*solid.mapped_quads) : flipped_scene(solid);
+        case SolidStage::quads:
+            return quad_scene(*solid.quads);
+        case SolidStage::surfaces:
+            return element_scene(solid.surfaces->surfaces);
+        case SolidStage::volume:
+            return element_scene(solid.volume->volume);
+        case SolidStage::hexes:
+            return element_scene(solid.hexes->hexahedra);
+        default:
+            return layout_scene(solid.cuboids);
+    }
+}
+
 std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& solid,
                                         SolidStage stage, bool png, const std::string& provenance) {
     if (stage == SolidStage::field && !solid.field) return {};
     if (stage == SolidStage::surfaces && !solid.surfaces) return {};
     std::vector<fs::path> files;
-    io::Scene scene;
     if (stage <= SolidStage::map) {
         std::vector<io::SurfaceArray> on_triangles{
             {"quad", column(solid.cuboids.surface.quad_of_face)}};
@@ -257,27 +300,23 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), to_soup(solid.cuboids.mesh), on_points, on_triangles,
                       arc_lines(solid.cuboids), provenance);
-        scene = stage == SolidStage::field ? field_scene(solid) : layout_scene(solid.cuboids);
     } else if (stage == SolidStage::quads) {
         const QuadMesh quads = to_quad_mesh(*solid.quads);
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), quads, provenance);
         files.push_back(with_extension(stem, ".obj"));
         io::write_obj(files.back(), quads, provenance);
-        scene = quad_scene(*solid.quads);
     } else if (stage == SolidStage::surfaces) {
         files.push_back(with_extension(stem, ".xml"));
         io::write_splines(files.back(), solid.surfaces->surfaces);
-        scene = element_scene(solid.surfaces->surfaces);
     } else if (stage == SolidStage::volume) {
         files.push_back(with_extension(stem, ".xml"));
         io::write_splines(files.back(), solid.volume->volume);
-        scene = element_scene(solid.volume->volume);
     } else {
         files = write_hexahedra(stem, *solid.hexes, provenance).files;
-        scene = element_scene(solid.hexes->hexahedra);
     }
-    if (png && stage != SolidStage::map) {
+    if (png) {
+        io::Scene scene = solid_scene(solid, stage);
         files.push_back(with_extension(stem, ".png"));
         scene.title = stem.stem().string();
         io::render_png(files.back(), scene);

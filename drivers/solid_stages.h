@@ -4,9 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "io/picture.h"
 #include "meshing/pipeline/solid_mesh.h"
 
 namespace couture::drivers {
+
+/// The picture of a stage that was run: quads of the layout; crosses and singularities of the
+/// field (of positive index red, others blue); quads where the map puts them, or its flipped
+/// triangles (red) if there are some; quads; the volume.
+[[nodiscard]] io::Scene solid_scene(const meshing::SolidMesh& solid, meshing::SolidStage stage);
 
 /// Writes what a stage shows: STEM.vtp (layout and map: the surface with the number of its quad on
 /// each triangle and arcs as curves, kind 6, along sharp edges 7; field: also the four directions

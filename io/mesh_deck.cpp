@@ -166,20 +166,29 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     });
     meshing::SolidMeshOptions& solid = deck.solid;
     solid.element_size = section.number("element_size", dimensions::length, positive).value_or(0.0);
+    solid.tolerance =
+        section.number("tolerance", dimensions::none, positive).value_or(solid.tolerance);
     constexpr int most_elements = 1000;
     solid.min_elements =
         section.integer("min_elements", 1, most_elements).value_or(solid.min_elements);
     solid.volume.degree =
         section.integer("degree", 1, iga::max_degree).value_or(solid.volume.degree);
-    solid.is_aligned =
-        section.choice("parameterization", {"aligned", "harmonic"}).value_or("aligned") ==
-        "aligned";
+    const std::string route =
+        section.choice("parameterization", {"aligned", "quadratic", "harmonic"})
+            .value_or("aligned");
+    solid.route = route == "aligned"     ? meshing::LayoutMapRoute::aligned
+                  : route == "quadratic" ? meshing::LayoutMapRoute::quadratic
+                                         : meshing::LayoutMapRoute::harmonic;
+    constexpr int most_relocations = 10'000;
+    solid.max_relocations =
+        section.integer("relocations", 0, most_relocations).value_or(solid.max_relocations);
     solid.alignment = section.number("alignment", dimensions::none, {.low = 0.0, .high = 1e6})
                           .value_or(solid.alignment);
-    if (solid.alignment > 0.0 && !solid.is_aligned) {
+    if (solid.alignment > 0.0 && solid.route != meshing::LayoutMapRoute::aligned) {
         section.mistake("alignment",
-                        "'alignment' draws the optimised map to the cross field; it has no place "
-                        "beside parameterization = \"harmonic\"");
+                        fmt::format("'alignment' draws the aligned map to the cross field; it has "
+                                    "no place beside parameterization = \"{}\"",
+                                    route));
     }
     constexpr int most_points = 1000;
     solid.n_points = section.integer("points", 2, most_points);
@@ -221,6 +230,7 @@ void read_family(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.mistake("reference", "of a 'design' the deck's own geometry is the reference");
     }
     family.reference = section.text("reference").value_or("");
+    family.members = section.texts("members");
     if (!deck.like.empty()) {
         section.mistake("",
                         "[family] repeats its reference; 'like' of [meshing] has no place "

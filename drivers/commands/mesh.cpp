@@ -10,6 +10,7 @@
 #include "drivers/mesh_family.h"
 #include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
+#include "drivers/stage_sheets.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
@@ -187,13 +188,39 @@ int n_hexahedra(const iga::MultiPatch<3>& hexahedra) {
     return n;
 }
 
+nlohmann::ordered_json field_json(const meshing::SolidMesh& solid) {
+    const auto& [topology, field, report] = *solid.field;
+    const meshing::SurfaceMesh& mesh = solid.cuboids.mesh;
+    auto singularities = nlohmann::ordered_json::array();
+    for (const auto& [vertex, index] : topology.singularities) {
+        const Vector3& x = mesh.point(meshing::VertexHandle(vertex));
+        singularities.push_back({{"point", {x.x(), x.y(), x.z()}}, {"quarter_turns", index}});
+    }
+    return {
+        {"singularities", singularities},
+        {"boundary_turns", topology.boundary_turns},
+        {"generator_turns", topology.generator_turns},
+        {"freedom", meshing::topological_freedom(meshing::compute_invariants(mesh),
+                                                 static_cast<int>(topology.singularities.size()))},
+        {"topological_energy", report.topological_energy},
+        {"energy", report.energy},
+        {"feature_angle", report.feature_angle}};
+}
+
 void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) {
     object["layout"] = {{"cuboids", solid.cuboids.volume.n_cuboids()},
                         {"quads", solid.cuboids.surface.layout.n_quads()},
                         {"templates", solid.cuboids.templates}};
+    if (solid.field) object["field"] = field_json(solid);
     if (solid.map) {
         const auto& report = solid.map->report;
-        object["map"] = {{"energy", report.energies}, {"flipped", report.n_flipped}};
+        object["map"] = {{"energy", report.energies},
+                         {"flipped", report.n_flipped},
+                         {"max_angle_change", report.distortion.largest_angle_change},
+                         {"mean_angle_change", report.distortion.mean_angle_change},
+                         {"min_area_ratio", report.distortion.smallest_area_ratio},
+                         {"max_area_ratio", report.distortion.largest_area_ratio}};
+        if (solid.field) object["map"]["angle_to_field"] = report.mean_angle_to_directions;
     }
     if (solid.quads) {
         object["quads"] = {{"energy", solid.relocation->energies},
@@ -413,6 +440,11 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
         for (const auto& file :
              write_mesh_stage(folder / fmt::format("{}_{}", name, to_string(which)), stages, which,
                               options.png, provenance)) {
+            files.push_back(file.string());
+        }
+    }
+    if (options.png) {
+        for (const auto& file : write_stage_sheets(folder / name, stages)) {
             files.push_back(file.string());
         }
     }

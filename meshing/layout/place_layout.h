@@ -8,11 +8,13 @@
 namespace couture::meshing {
 
 /// Draws the boundary of a coarse mesh of cuboids, which lies about where the solid does, on the
-/// solid's surface, padded where it needs it.
+/// solid's surface, padded where it needs it: where outer sides of one cuboid meet at a smooth arc
+/// or at a feature with an interior angle of more than 120 degrees, around which the corners of two
+/// cuboids are better.
 ///
 /// Feature corners take the nearest nodes, one to one; then nodes with two or more sharp arcs that
 /// are near a feature curve lie on it, and arcs between nodes on features follow these where the
-/// way along them is about as short as the arc. Where that does not cut the surface into discs,
+/// way along them is about as short as the arc. Then it is padded. Where that does not cut the surface into discs,
 /// arcs are drawn as shortest paths near to their straight lines, until it does; nodes on them lie
 /// where the surface is nearest. The remaining arcs are those of embed_layout. A feature along
 /// which no arc runs is treated as smooth, see untied_length.

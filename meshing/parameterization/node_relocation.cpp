@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "iga/core/error.h"
@@ -111,11 +112,13 @@ class CellEnergy {
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
 
-    void assemble(const SurfaceSlide::State& state, NewtonSystem& system) const {
+    /// @param is_free  points that may move
+    void assemble(const SurfaceSlide::State& state, const std::vector<bool>& is_free,
+                  NewtonSystem& system) const {
         system.set_zero();
         for (std::size_t c = 0; c < corners_.size(); ++c) {
             const SymmetricDirichlet term(gradient(state, corners_[c]));
-            add(state, static_cast<int>(c), term.gradient,
+            add(state, static_cast<int>(c), is_free, term.gradient,
                 {{term.modes.begin(), term.modes.end()},
                  {term.eigenvalues.begin(), term.eigenvalues.end()}},
                 system);
@@ -147,7 +150,7 @@ class CellEnergy {
 
     /// Its gradient, and the part of its Hessian that is positive for sure.
     void assemble_regularised(const SurfaceSlide::State& state, double width,
-                              NewtonSystem& system) const {
+                              const std::vector<bool>& is_free, NewtonSystem& system) const {
         system.set_zero();
         for (std::size_t c = 0; c < corners_.size(); ++c) {
             const Matrix<2> F = gradient(state, corners_[c]);
@@ -165,11 +168,45 @@ class CellEnergy {
             modes.matrices.push_back(cofactor);
             modes.eigenvalues.push_back(6.0 * squares * slope * slope * inverse_square *
                                         inverse_square);
-            add(state, static_cast<int>(c),
+            add(state, static_cast<int>(c), is_free,
                 2.0 * (1.0 + inverse_square) * F -
                     (2.0 * squares * slope * inverse_square / chi) * cofactor,
                 modes, system);
         }
+    }
+
+    /// Holds the points of cells that are steeper than allowed; whether there were free ones.
+    bool hold_steep(const SurfaceSlide::State& state, const std::vector<double>& least_cosines,
+                    std::vector<bool>& is_free) const {
+        const std::vector<double> cosines = steepness(state);
+        bool is_any = false;
+        for (std::size_t cell = 0; cell < cosines.size(); ++cell) {
+            if (cosines[cell] >= least_cosines[cell]) continue;
+            for (std::size_t k = 4 * cell; k < 4 * cell + 4; ++k) {
+                for (const int point : corners_[k].points) {
+                    is_any = is_any || is_free[point];
+                    is_free[point] = false;
+                }
+            }
+        }
+        return is_any;
+    }
+
+    /// For each cell the smallest cosine of the angles between its normal and the surface's in its
+    /// corners.
+    [[nodiscard]] std::vector<double> steepness(const SurfaceSlide::State& state) const {
+        std::vector<double> cosines;
+        for (std::size_t first = 0; first < corners_.size(); first += 4) {
+            const CellCorner& cell = corners_[first];
+            const MatrixX& normals = state.normals[cell.quad];
+            const Vector3 normal = cell_normal(state, cell);
+            double least = 1.0;
+            for (const int at : {cell.first, cell.first + 1, cell.above, cell.above + 1}) {
+                least = std::min(least, normal.dot(normals.col(at)));
+            }
+            cosines.push_back(least);
+        }
+        return cosines;
     }
 
     /// The points' moves, and the part of them that moves none farther than its cells are long.
@@ -212,13 +249,16 @@ class CellEnergy {
         return {chi, chi / root};
     }
 
-    /// Adds a corner's gradient and Hessian with respect to F.
-    void add(const SurfaceSlide::State& state, int c, const Matrix<2>& of_F, const Modes& modes,
-             NewtonSystem& system) const {
+    /// Adds a corner's gradient and Hessian with respect to F; points that may not move are left
+    /// out.
+    void add(const SurfaceSlide::State& state, int c, const std::vector<bool>& is_free,
+             const Matrix<2>& of_F, const Modes& modes, NewtonSystem& system) const {
         const CellCorner& corner = corners_[c];
         const double weight = 1.0 / static_cast<double>(corners_.size());
         const Matrix<3, 2> plane = tangent_plane(state, corner);
         const Matrix<3, 2> edges = scaled_edges(corner);
+        Vector<6> free;
+        for (int i = 0; i < 6; ++i) free[i] = is_free[corner.points[i / 2]] ? 1.0 : 0.0;
         const auto pulled_back = [&](const Matrix<2>& M) {
             const Matrix<3> of_points = plane * M * edges.transpose();
             Vector<6> row;
@@ -226,9 +266,9 @@ class CellEnergy {
                 row.segment<2>(2 * i) =
                     state.directions[corner.points[i]].transpose() * of_points.col(i);
             }
-            return row;
+            return Vector<6>(free.cwiseProduct(row));
         };
-        Matrix<6> hessian = Matrix<6>::Zero();
+        Matrix<6> hessian = weight * (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
         for (std::size_t m = 0; m < modes.matrices.size(); ++m) {
             const Vector<6> row = pulled_back(modes.matrices[m]);
             hessian.noalias() += (weight * modes.eigenvalues[m]) * row * row.transpose();
@@ -240,12 +280,17 @@ class CellEnergy {
         return corner.edges * corner.lengths.cwiseInverse().asDiagonal() / cell_size_;
     }
 
+    [[nodiscard]] static Vector3 cell_normal(const SurfaceSlide::State& state,
+                                             const CellCorner& corner) {
+        const MatrixX& normals = state.normals[corner.quad];
+        return (normals.col(corner.first) + normals.col(corner.first + 1) +
+                normals.col(corner.above) + normals.col(corner.above + 1))
+            .normalized();
+    }
+
     [[nodiscard]] static Matrix<3, 2> tangent_plane(const SurfaceSlide::State& state,
                                                     const CellCorner& corner) {
-        const MatrixX& normals = state.normals[corner.quad];
-        const Vector3 normal = (normals.col(corner.first) + normals.col(corner.first + 1) +
-                                normals.col(corner.above) + normals.col(corner.above + 1))
-                                   .normalized();
+        const Vector3 normal = cell_normal(state, corner);
         Matrix<3, 2> plane;
         plane.col(0) = normal.unitOrthogonal();
         plane.col(1) = normal.cross(Vector3(plane.col(0)));
@@ -266,17 +311,110 @@ class CellEnergy {
     double cell_size_ = 1.0;
 };
 
-/// A Newton step of the assembled system along which a value falls; false if there is none.
+/// Points that may move, and how steep cells may become: a cell whose corners slide down a finger
+/// of the surface, off its tip, has less energy but leaves the tip out.
+struct Hold {
+    std::vector<bool> is_free;
+    std::vector<double> least_cosines;
+};
+
+Hold make_hold(const CellEnergy& energy, const SurfaceSlide::State& state) {
+    constexpr double least_cosine = 0.7;
+    Hold hold{std::vector<bool>(state.directions.size(), true), energy.steepness(state)};
+    for (double& cosine : hold.least_cosines) cosine = std::min(cosine - 1e-6, least_cosine);
+    return hold;
+}
+
+struct LineSearch {
+    SurfaceSlide::State state;
+    /// Of the longest step.
+    double part = 0.0;
+};
+
+/// The largest part of the moves, halved again and again, at which the value is lower.
 template <typename Value>
-bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-               const Value& value, SurfaceSlide::State& state) {
-    const auto [moves, part] = energy.moves(state, system.step());
+std::optional<LineSearch> search_along(const SurfaceSlide& slide, const SurfaceSlide::State& state,
+                                       const MatrixX& moves, const Value& value) {
     const double start = value(state);
     constexpr int max_halvings = 12;
-    double t = part;
-    for (int i = 0; i < max_halvings; ++i, t *= 0.5) {
-        SurfaceSlide::State moved = slide.placed(state.points + t * moves);
-        if (value(moved) < start) {
+    double part = 1.0;
+    for (int i = 0; i < max_halvings; ++i, part *= 0.5) {
+        SurfaceSlide::State moved = slide.placed(state.points + part * moves);
+        if (value(moved) < start) return LineSearch{std::move(moved), part};
+    }
+    return std::nullopt;
+}
+
+/// A Newton step along which a value falls. Steps that would make cells too steep are taken again
+/// with these held.
+///
+/// @return the part of the step that was taken; 0 if there is none
+template <typename Assemble, typename Value>
+double step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                 const Assemble& assemble, const Value& value, SurfaceSlide::State& state,
+                 Hold& hold) {
+    while (true) {
+        assemble(state, hold.is_free);
+        const auto [moves, longest] = energy.moves(state, system.step());
+        std::optional<LineSearch> found = search_along(slide, state, longest * moves, value);
+        if (!found) return 0.0;
+        if (energy.hold_steep(found->state, hold.least_cosines, hold.is_free)) continue;
+        state = std::move(found->state);
+        return found->part;
+    }
+}
+
+double newton_step(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                   SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble(at, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.value(at); }, state, hold);
+}
+
+/// @param width  see CellEnergy::regularised_value
+double regularised_step(const CellEnergy& energy, const SurfaceSlide& slide, double width,
+                        NewtonSystem& system, SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble_regularised(at, width, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.regularised_value(at, width); }, state,
+        hold);
+}
+
+/// Lowers the regularised energy until no corner is inverted; false if some are left.
+bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+              SurfaceSlide::State& state) {
+    constexpr int max_steps = 100;
+    constexpr double least_width = 0.02;
+    if (energy.n_inverted(state) == 0) return true;
+    Hold hold = make_hold(energy, state);
+    for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
+        const double width = std::max(least_width, -energy.min_jacobian(state));
+        if (regularised_step(energy, slide, width, system, state, hold) == 0.0) break;
+    }
+    return energy.n_inverted(state) == 0;
+}
+
+/// Goes down by the regularised energy, which the worst corners don't rule, and from there by the
+/// energy itself; false if that does not end below the start.
+bool escape(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+            SurfaceSlide::State& state, const Hold& hold) {
+    constexpr int max_steps = 5;
+    for (const double width : {0.1, 0.3, 1.0}) {
+        SurfaceSlide::State moved = state;
+        Hold moved_hold = hold;
+        for (int i = 0; i < max_steps; ++i) {
+            regularised_step(energy, slide, width, system, moved, moved_hold);
+        }
+        for (int i = 0; i < max_steps; ++i) {
+            newton_step(energy, slide, system, moved, moved_hold);
+        }
+        if (energy.value(moved) < energy.value(state)) {
             state = std::move(moved);
             return true;
         }
@@ -284,31 +422,24 @@ bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem
     return false;
 }
 
-/// Lowers the regularised energy until no corner is inverted; false if some are left.
-bool untangle(CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-              SurfaceSlide::State& state) {
-    constexpr int max_steps = 100;
-    constexpr double least_width = 0.02;
-    for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
-        const double width = std::max(least_width, -energy.min_jacobian(state));
-        energy.assemble_regularised(state, width, system);
-        const auto value = [&](const SurfaceSlide::State& at) {
-            return energy.regularised_value(at, width);
-        };
-        if (!step_down(energy, slide, system, value, state)) break;
-    }
-    return energy.n_inverted(state) == 0;
+/// One step with the energy falling; false if there is none.
+bool descend(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+             SurfaceSlide::State& state, Hold& hold) {
+    const double part = newton_step(energy, slide, system, state, hold);
+    // The planes of cells turn as their points move, which the derivatives leave out: beside nearly
+    // inverted corners they may not lead down.
+    constexpr double stuck = 0.05;
+    return (part < stuck && escape(energy, slide, system, state, hold)) || part > 0.0;
 }
 
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
               NewtonSystem& system, SurfaceSlide::State& state, NodeRelocationReport& report) {
-    const auto value = [&](const SurfaceSlide::State& at) { return energy.value(at); };
     energy.fit_cell_size(state);
+    Hold hold = make_hold(energy, state);
     report.energies.push_back(energy.value(state));
     for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
         const double start = report.energies.back();
-        energy.assemble(state, system);
-        if (!step_down(energy, slide, system, value, state)) {
+        if (!descend(energy, slide, system, state, hold)) {
             // As far as the surface's facets allow.
             report.is_converged = true;
             return;

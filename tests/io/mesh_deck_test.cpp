@@ -77,6 +77,21 @@ TEST_CASE("mesh deck: angles are in degrees, or have their unit", "[io]") {
           Approx(deck.features.angle));
 }
 
+TEST_CASE("mesh deck: how the surface is mapped", "[io]") {
+    const auto solid = [](const std::string& keys) {
+        return parse(wheel + "[meshing]\n" + keys).solid;
+    };
+    using meshing::LayoutMapRoute;
+    CHECK(solid("").route == LayoutMapRoute::aligned);
+    CHECK(solid("parameterization = \"harmonic\"\n").route == LayoutMapRoute::harmonic);
+    CHECK(solid("parameterization = \"quadratic\"\n").route == LayoutMapRoute::quadratic);
+    CHECK(solid("alignment = 2\nrelocations = 25\n").alignment == 2.0);
+    CHECK(solid("alignment = 2\nrelocations = 25\n").max_relocations == 25);
+    CHECK_THROWS_WITH(solid("parameterization = \"quadratic\"\nalignment = 2\n"),
+                      Contains("no place beside parameterization = \"quadratic\""));
+    CHECK_THROWS_WITH(solid("relocations = -1\n"), Contains("relocations"));
+}
+
 TEST_CASE("mesh deck: what is left out has its default", "[io]") {
     const io::MeshDeck deck = parse(wheel);
     CHECK(deck.stage == "pants");
