@@ -207,12 +207,6 @@ io::Scene flipped_scene(const SolidMesh& solid) {
     return scene;
 }
 
-io::Scene volume_scene(const iga::MultiPatch<3>& volume) {
-    io::SceneOptions options;
-    options.element_lines = true;
-    return io::make_scene(iga::Space<3>(volume), options);
-}
-
 // Crosses, so far apart that each can be seen, on the plain surface; singularities of positive
 // index red, others blue.
 io::Scene field_scene(const SolidMesh& solid) {
