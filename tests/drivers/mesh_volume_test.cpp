@@ -1,4 +1,5 @@
 // From triangles to certified volumes.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
