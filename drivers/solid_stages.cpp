@@ -224,11 +224,19 @@ io::Scene field_scene(const SolidMesh& solid) {
 
 }  // namespace
 
+io::Scene solid_stage_scene(const SolidMesh& solid, SolidStage stage) {
+    if (stage == SolidStage::field) return field_scene(solid);
+    if (stage <= SolidStage::map) return layout_scene(solid.cuboids);
+    if (stage == SolidStage::quads) return quad_scene(*solid.quads);
+    io::SceneOptions options;
+    options.element_lines = true;
+    return io::make_scene(iga::Space<3>(solid.volume->volume), options);
+}
+
 std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& solid,
                                         SolidStage stage, bool png, const std::string& provenance) {
     if (stage == SolidStage::field && !solid.field) return {};
     std::vector<fs::path> files;
-    io::Scene scene;
     if (stage <= SolidStage::map) {
         std::vector<io::SurfaceArray> on_triangles{
             {"quad", column(solid.cuboids.surface.quad_of_face)}};
@@ -247,24 +255,19 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), to_soup(solid.cuboids.mesh), on_points, on_triangles,
                       arc_lines(solid.cuboids), provenance);
-        scene = stage == SolidStage::field ? field_scene(solid) : layout_scene(solid.cuboids);
     } else if (stage == SolidStage::quads) {
         const QuadMesh quads = to_quad_mesh(*solid.quads);
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), quads, provenance);
         files.push_back(with_extension(stem, ".obj"));
         io::write_obj(files.back(), quads, provenance);
-        scene = quad_scene(*solid.quads);
     } else {
         files.push_back(with_extension(stem, ".xml"));
         io::write_splines(files.back(), solid.volume->volume);
-        const iga::Space<3> space(solid.volume->volume);
-        io::SceneOptions options;
-        options.element_lines = true;
-        scene = io::make_scene(space, options);
     }
     if (png && stage != SolidStage::map) {
         files.push_back(with_extension(stem, ".png"));
+        io::Scene scene = solid_stage_scene(solid, stage);
         scene.title = stem.stem().string();
         io::render_png(files.back(), scene);
     }

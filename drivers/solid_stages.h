@@ -4,9 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "io/scene.h"
 #include "meshing/pipeline/solid_mesh.h"
 
 namespace couture::drivers {
+
+/// The picture of a stage that was made: the layout for the map, too.
+[[nodiscard]] io::Scene solid_stage_scene(const meshing::SolidMesh& solid,
+                                          meshing::SolidStage stage);
 
 /// Writes what a stage shows: STEM.vtp (layout and map: the surface with the number of its quad on
 /// each triangle and arcs as curves, kind 6, along sharp edges 7; field: also the four directions
