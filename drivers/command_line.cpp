@@ -161,6 +161,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
         ->check(CLI::ExistingFile);
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");
+    sub->add_flag("--resume", mesh->resume,
+                  "of a family: only the members that an earlier run has not done");
 
     sub = add_command(app, command, "info",
                       "say what a spline, surface or hexahedral mesh file holds",

@@ -27,11 +27,12 @@ void check_options(const MeshOptions& options) {
                          options.surface,
                          options.stage.empty() ? "" : fmt::format(", not {}", options.stage));
     }
-    const bool has_more =
-        !options.overrides.empty() || options.edge_length != 0.0 || options.feature_angle ||
-        !options.cycle_weights.empty() || !options.merge_weights.empty() || !options.open.empty() ||
-        !options.open_at.empty() || !options.open_facing.empty() || options.most_boundaries ||
-        !options.like.empty() || options.fix || options.fill_holes || options.shell || options.png;
+    const bool has_more = !options.overrides.empty() || options.edge_length != 0.0 ||
+                          options.feature_angle || !options.cycle_weights.empty() ||
+                          !options.merge_weights.empty() || !options.open.empty() ||
+                          !options.open_at.empty() || !options.open_facing.empty() ||
+                          options.most_boundaries || !options.like.empty() || options.fix ||
+                          options.fill_holes || options.shell || options.png || options.resume;
     if (has_more) {
         throw InputError(
             "mesh: {} is a spline file: only --stage, --points and --out are options; the others "

@@ -300,6 +300,13 @@ MeshStage read_mesh_stage(const std::string& name) {
 std::string to_string(MeshStage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
 MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file) {
+    MeshStages stages;
+    run_mesh_stages(deck, problems_file, stages);
+    return stages;
+}
+
+void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file,
+                     MeshStages& stages) {
     const MeshStage last = read_mesh_stage(deck.stage);
     PreparedSurface surface = prepare_surface(deck, problems_file);
     PantsOptions options = pants_options(deck, surface);
@@ -310,24 +317,29 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         last_said = timer.seconds();
         log::info(fmt::format("mesh: {} ({:.0f} %, {:.0f} s)", what, 100.0 * fraction, last_said));
     };
-    MeshStages stages;
+    stages = {};
     if (last >= MeshStage::features) stages.features = find_features(deck, surface);
     stages.mesh = std::move(surface.mesh);
     stages.part = std::move(surface.part);
     stages.invariants = compute_invariants(stages.mesh);
     stages.surface_name = surface_name(stages.mesh);
     check_gauss_bonnet(stages.mesh);
-    if (last < MeshStage::loops) return stages;
+    if (last < MeshStage::loops) return;
     meshing::SolidMeshOptions solid = deck.solid;
     solid.progress = [&](std::string_view what) {
         log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
     };
     solid.faces = std::move(surface.faces);
     if (last > MeshStage::pants) solid.last = solid_stage(last);
+    const auto run_solid = [&](CuboidDecomposition cuboids) {
+        // What is left if mesh_solid throws.
+        stages.solid.emplace().cuboids = cuboids;
+        stages.solid = mesh_solid(std::move(cuboids), solid);
+    };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
-        stages.solid = mesh_solid(placed_cuboids(deck, stages, surface.landmarks), solid);
-        return stages;
+        run_solid(placed_cuboids(deck, stages, surface.landmarks));
+        return;
     }
     std::optional<ClosingCaps> caps = surface.caps;
     if (last > MeshStage::pants) {
@@ -344,7 +356,7 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     }
     if (last >= MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
-    if (last <= MeshStage::pants) return stages;
+    if (last <= MeshStage::pants) return;
     TemplateLibrary library = io::built_in_templates();
     if (!deck.templates.empty()) io::add_templates(deck.templates, library);
     solid.progress("choosing and drawing cuboids");
@@ -357,8 +369,17 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         return repeat_cuboids(stages.mesh, stages.features, *stages.pants, *caps, library,
                               carry_over(*surface.record->layout, warp));
     };
-    stages.solid = mesh_solid(cuboids(), solid);
-    return stages;
+    run_solid(cuboids());
+}
+
+std::optional<MeshStage> reached_stage(const MeshStages& stages) {
+    if (stages.solid) {
+        if (stages.solid->volume) return MeshStage::volume;
+        return stages.solid->quads ? MeshStage::quads : MeshStage::layout;
+    }
+    if (stages.pants) return MeshStage::pants;
+    if (stages.mesh.n_faces() == 0) return {};
+    return stages.features.curves.empty() ? MeshStage::surface : MeshStage::features;
 }
 
 io::Scene stage_scene(const MeshStages& stages, MeshStage stage) {
@@ -369,6 +390,13 @@ io::Scene stage_scene(const MeshStages& stages, MeshStage stage) {
     }
     return stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
                                        : make_scene(stages, stage, lines_of(stages, stage));
+}
+
+void write_stage_picture(const std::filesystem::path& path, const MeshStages& stages,
+                         MeshStage stage) {
+    io::Scene scene = stage_scene(stages, stage);
+    if (stage > MeshStage::pants) scene.title = path.stem().string();
+    io::render_png(path, scene);
 }
 
 std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
@@ -406,7 +434,7 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (png) {
         std::filesystem::path picture = stem;
         picture += ".png";
-        io::render_png(picture, stage_scene(stages, stage));
+        write_stage_picture(picture, stages, stage);
         files.push_back(picture);
     }
     return files;

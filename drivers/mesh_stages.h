@@ -56,6 +56,18 @@ struct MeshStages {
 /// @throws what the stages throw
 [[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck,
                                          const std::filesystem::path& problems_file);
+/// The same into `stages`, which hold what was made up to a stage that throws.
+void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file,
+                     MeshStages& stages);
+
+/// The last stage that was made and can be drawn; nothing if there is no surface.
+[[nodiscard]] std::optional<MeshStage> reached_stage(const MeshStages& stages);
+
+/// Draws a stage; not the map.
+///
+/// @throws FileError  if it can't be written
+void write_stage_picture(const std::filesystem::path& path, const MeshStages& stages,
+                         MeshStage stage);
 
 /// The picture of a stage that was run; of the field only if it was made.
 [[nodiscard]] io::Scene stage_scene(const MeshStages& stages, MeshStage stage);

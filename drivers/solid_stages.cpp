@@ -313,8 +313,8 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
         files = write_hexahedra(stem, *solid.hexes, provenance).files;
     }
     if (png) {
-        io::Scene scene = solid_scene(solid, stage);
         files.push_back(with_extension(stem, ".png"));
+        io::Scene scene = solid_scene(solid, stage);
         scene.title = stem.stem().string();
         io::render_png(files.back(), scene);
     }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/picture.h"
+#include "io/scene.h"
 #include "meshing/pipeline/solid_mesh.h"
 
 namespace couture::drivers {

@@ -418,6 +418,10 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
                          *deck.solid.n_points, deck.stage);
     }
     if (deck.family) return mesh_family(deck, options, common);
+    if (options.resume) {
+        throw InputError("mesh: --resume goes on with the members of a family; {} has no [family]",
+                         options.surface);
+    }
     const MeshStage last = read_mesh_stage(deck.stage);
 
     const std::string name = std::filesystem::path(options.surface).stem().string();

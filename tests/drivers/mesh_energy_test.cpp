@@ -57,6 +57,17 @@ double energy_ratio(const fs::path& volume, const std::string& held, const fs::p
     return (energies[1] - energies[0]) / (energies[2] - energies[1]);
 }
 
+// Meshes with two elements per cuboid and direction, then solves.
+//
+// @param input  arguments of couture mesh beside --out
+void check_energies(const std::string& input, const std::string& volume, const std::string& held,
+                    const fs::path& folder) {
+    const ProgramResult mesh = run_couture("mesh " + input + " --out mesh", folder);
+    INFO(mesh.errors);
+    REQUIRE(mesh.exit_code == 0);
+    CHECK(energy_ratio("mesh/" + volume + "_volume.xml", held, folder) >= least_ratio);
+}
+
 }  // namespace
 
 TEST_CASE("mesh, solve: differences of energies shrink with each refinement", "[drivers]") {
@@ -75,9 +86,18 @@ TEST_CASE("mesh, solve: differences of energies shrink with each refinement", "[
     }));
     CAPTURE(name);
     const TemporaryFolder folder;
-    const ProgramResult mesh =
-        run_couture("mesh " + input + " --element-size 1000 --out mesh", folder.path());
-    INFO(mesh.errors);
-    REQUIRE(mesh.exit_code == 0);
-    CHECK(energy_ratio("mesh/" + name + "_volume.xml", held, folder.path()) >= least_ratio);
+    check_energies(input + " --element-size 1000", name, held, folder.path());
+}
+
+TEST_CASE("mesh, solve: differences of energies shrink on a vessel", "[drivers]") {
+    const auto data = test::data_folder();
+    if (!data) return;
+    const TemporaryFolder folder;
+    const std::string deck = "mesh_artery.toml";
+    fs::copy_file(fs::path(COUTURE_SOURCE_DIR) / "tests/drivers/decks" / deck,
+                  folder.path() / deck);
+    fs::create_symlink(fs::absolute(*data / "surfaces/vampy_artery.stl"),
+                       folder.path() / "vampy_artery.stl");
+    check_energies(deck + " --set meshing.element_size=1000", "mesh_artery", "cap_1",
+                   folder.path());
 }
