@@ -38,3 +38,6 @@ find_package(CLI11 REQUIRED)
 
 find_package(OpenMesh CONFIG REQUIRED)
 find_package(CGAL 5.5 CONFIG REQUIRED)
+
+find_package(Boost REQUIRED)
+pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)

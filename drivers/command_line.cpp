@@ -118,9 +118,11 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
            "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), a "
            "deck (.toml), or a spline file (.xml, .mesh, .txt, .inp, .h5)")
         ->required();
-    sub->add_option("--stage", mesh->stage,
-                    "the last stage: surface, features, loops, pants (default), layout, "
-                    "field, map, quads, volume, hexes; of splines: volume (from surfaces), hexes");
+    sub->add_option(
+        "--stage", mesh->stage,
+        "the last stage: surface, features, loops, pants (default), layout, "
+        "field, map, quads, surfaces, volume, hexes; of splines: volume (from surfaces), "
+        "hexes");
     sub->add_option("--points", mesh->n_points,
                     "points per direction of the hexahedra in each patch (default: as many as "
                     "control points)");
@@ -148,7 +150,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     "length of a spline element (default: a twentieth of the diagonal)");
     sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
     sub->add_option("--layout", mesh->layout,
-                    "a coarse mesh of cuboids (.mesh, .vtk) that lies about where the solid does: "
+                    "a coarse mesh of cuboids (.mesh, .vtk, or .toml: nodes and cuboids by "
+                    "hand) that lies about where the solid does: "
                     "it is placed on the surface instead of templates")
         ->check(CLI::ExistingFile);
     sub->add_option(
@@ -158,12 +161,16 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
         ->check(CLI::ExistingFile);
     sub->add_option("--out", mesh->out, "folder of the results (default: out/<name>)");
     sub->add_flag("--png", mesh->png, "draw every stage");
+    sub->add_flag("--resume", mesh->resume,
+                  "of a family: only the members that an earlier run has not done");
 
-    sub = add_command(app, command, "info", "say what a spline or surface file holds",
+    sub = add_command(app, command, "info",
+                      "say what a spline, surface or hexahedral mesh file holds",
                       [&command, from] { return run_info(*from, command.common); });
-    sub->add_option("file", from->surface,
-                    "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), or the name of "
-                    "a part")
+    sub->add_option(
+           "file", from->surface,
+           "a spline file, a surface file (.stl, .obj, .off, .ply, .vtp), a hexahedral mesh "
+           "(.vtk, Medit's .mesh), or the name of a part")
         ->required();
     add_surface_options(sub, *from);
 

@@ -1,7 +1,7 @@
 #include "drivers/job_summary.h"
 
-#include "drivers/hash.h"
 #include "iga/core/parallel.h"
+#include "iga/core/text_hash.h"
 
 namespace couture::drivers {
 
@@ -10,7 +10,7 @@ Summary describe_job(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
                      const GeometryCertificate& certificate) {
     Summary summary;
     summary.deck = deck.path.string();
-    summary.deck_hash = fnv_hash(deck.text);
+    summary.deck_hash = text_hash(deck.text);
     summary.title = deck.title;
     summary.units = deck.units.name();
     summary.signature = iga::signature(geometry);

@@ -3,13 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "drivers/hash.h"
+#include "drivers/family_results.h"
 #include "drivers/mesh_stages.h"
+#include "drivers/prepared_surface.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "iga/topology/space.h"
 #include "io/family_members.h"
@@ -25,28 +26,6 @@ namespace couture::drivers {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
-// What became of a member.
-struct MemberResult {
-    io::FamilyMember member;
-    // Why it failed; empty if it did not.
-    std::string failure;
-    double seconds = 0.0;
-    std::string signature;
-    std::optional<meshing::LayoutVolumeReport> report;
-    // Of parts.
-    std::optional<meshing::HomologyReport> homology;
-    // Half way to the reference, and to the member before that was made.
-    std::optional<iga::Validity> to_reference;
-    std::optional<iga::Validity> to_previous;
-    fs::path file;
-
-    [[nodiscard]] bool has_certified_midpoints() const {
-        return to_reference.value_or(iga::Validity::valid) == iga::Validity::valid &&
-               to_previous.value_or(iga::Validity::valid) == iga::Validity::valid;
-    }
-};
 
 struct MeshedMember {
     MeshStages stages;
@@ -56,13 +35,16 @@ struct MeshedMember {
 
 class Family {
   public:
-    Family(const io::MeshDeck& deck, fs::path folder, std::string name, bool png,
-           std::string provenance)
+    Family(const io::MeshDeck& deck, const fs::path& folder, std::string name,
+           const MeshOptions& options, std::string job)
         : deck_(deck),
-          folder_(std::move(folder)),
+          folder_(folder),
           name_(std::move(name)),
-          has_pictures_(png),
-          provenance_(std::move(provenance)) {}
+          has_pictures_(options.png),
+          job_(std::move(job)),
+          progress_(folder / (name_ + "_members.json")) {
+        if (options.resume) earlier_ = read_family_progress(progress_, job_);
+    }
 
     void run() {
         const std::vector<io::FamilyMember> members = io::family_members(deck_);
@@ -71,7 +53,15 @@ class Family {
             MemberResult& result = results_.emplace_back();
             result.member = members[m];
             const Timer timer;
+            if (const MemberResult* earlier = find_earlier(members[m])) {
+                result = *earlier;
+                result.member = members[m];
+                take_over(result.member);
+                continue;
+            }
             if (m == 0) {
+                // What was repeated from another reference is of no use.
+                earlier_.clear();
                 run_reference(result);
             } else {
                 run_member(result);
@@ -80,7 +70,9 @@ class Family {
             if (!result.failure.empty()) {
                 log::warn(fmt::format("family: {} failed: {}", result.member.name, result.failure));
             }
+            write_family_progress(progress_, job_, results_);
         }
+        files_.push_back(progress_);
         if (has_pictures_) draw();
     }
 
@@ -88,17 +80,64 @@ class Family {
     [[nodiscard]] const std::vector<fs::path>& files() const { return files_; }
 
   private:
-    [[nodiscard]] MeshedMember mesh(const io::FamilyMember& member) const {
+    [[nodiscard]] io::MeshDeck deck_of(const io::FamilyMember& member) const {
         io::MeshDeck deck = deck_;
         deck.family.reset();
         deck.parameters = member.parameters;
         deck.surface = member.surface;
         deck.like = record_;
-        return {run_mesh_stages(deck, folder_ / (member.name + "_problems.vtp"))};
+        return deck;
+    }
+
+    [[nodiscard]] fs::path problems_file(const io::FamilyMember& member) const {
+        return folder_ / (member.name + "_problems.vtp");
+    }
+
+    [[nodiscard]] fs::path volume_file(const io::FamilyMember& member) const {
+        return folder_ / (member.name + "_volume.xml");
+    }
+
+    [[nodiscard]] fs::path record_file(const io::FamilyMember& member) const {
+        return folder_ / (member.name + "_layout.json");
+    }
+
+    // What an earlier run made of the same member, if its files are still there and not older than
+    // its surface.
+    [[nodiscard]] const MemberResult* find_earlier(const io::FamilyMember& member) const {
+        const auto found = std::ranges::find_if(earlier_, [&](const MemberResult& one) {
+            return one.member.name == member.name && one.member.parameters == member.parameters;
+        });
+        const fs::path volume = volume_file(member);
+        if (found == earlier_.end() || !fs::exists(volume)) return nullptr;
+        if (record_.empty() && !fs::exists(record_file(member))) return nullptr;
+        const bool is_newer = member.surface.empty() ||
+                              fs::last_write_time(volume) >= fs::last_write_time(member.surface);
+        return is_newer ? &*found : nullptr;
+    }
+
+    // Goes on from what an earlier run wrote.
+    void take_over(const io::FamilyMember& member) {
+        log::info(fmt::format("family: {} is done already", member.name));
+        auto volume =
+            std::get<iga::MultiPatch<3>>(io::read_splines(volume_file(member)).multipatch);
+        if (record_.empty()) {
+            const PreparedSurface surface = prepare_surface(deck_of(member), problems_file(member));
+            reference_ = volume;
+            if (surface.part) {
+                images_ = meshing::find_feature_images(reference_,
+                                                       meshing::named_features(*surface.part));
+            }
+            record_ = record_file(member);
+            files_.push_back(record_);
+        }
+        files_.push_back(volume_file(member));
+        if (has_pictures_) add_scene(member.name, volume);
+        previous_ = std::move(volume);
     }
 
     void run_reference(MemberResult& result) {
-        MeshedMember meshed = mesh(result.member);
+        MeshedMember meshed;
+        run_mesh_stages(deck_of(result.member), problems_file(result.member), meshed.stages);
         const auto validity = meshed.made().report.parameterization.validity;
         if (validity != iga::Validity::valid) {
             throw GeometryError(
@@ -118,33 +157,57 @@ class Family {
             throw GeometryError("family: the reference '{}': {}", result.member.name,
                                 result.failure);
         }
-        record_ = folder_ / (result.member.name + "_layout.json");
+        record_ = record_file(result.member);
         io::write_layout_record(record_, *meshed.stages.record, meshed.stages.solid->cuboids.record,
-                                provenance_);
+                                job_);
         files_.push_back(record_);
         write(meshed, result);
     }
 
     void run_member(MemberResult& result) {
+        MeshedMember meshed;
         try {
-            MeshedMember meshed = mesh(result.member);
+            run_mesh_stages(deck_of(result.member), problems_file(result.member), meshed.stages);
             examine(meshed, result);
-            if (!result.failure.empty()) return;
-            result.to_reference =
-                meshing::certified(meshing::midpoint(reference_, meshed.volume()));
-            result.to_previous = meshing::certified(meshing::midpoint(previous_, meshed.volume()));
-            write(meshed, result);
-            previous_ = meshed.volume();
         } catch (const Error& error) {
             result.failure = error.what();
+        }
+        if (!result.failure.empty()) {
+            draw_failure(meshed.stages, result);
+            return;
+        }
+        const auto certificate = [&](const iga::MultiPatch<3>& other) {
+            return iga::to_string(meshing::certified(meshing::midpoint(other, meshed.volume())));
+        };
+        result.to_reference = certificate(reference_);
+        result.to_previous = certificate(previous_);
+        write(meshed, result);
+        previous_ = meshed.volume();
+    }
+
+    // The stage that a member reached.
+    void draw_failure(const MeshStages& stages, const MemberResult& result) {
+        const auto stage = reached_stage(stages);
+        if (!stage) return;
+        const fs::path path =
+            folder_ / fmt::format("{}_failed_{}.png", result.member.name, to_string(*stage));
+        try {
+            write_stage_picture(path, stages, *stage);
+            files_.push_back(path);
+        } catch (const Error& error) {
+            log::warn(error.what());
         }
     }
 
     // Whether the volume may stand beside the reference; if not, why.
     void examine(const MeshedMember& meshed, MemberResult& result) const {
-        result.report = meshed.made().report;
+        const meshing::LayoutVolumeReport& report = meshed.made().report;
+        const auto& parameterization = report.parameterization;
         result.signature = iga::signature(meshed.volume());
-        const auto& parameterization = result.report->parameterization;
+        result.certificate = iga::to_string(parameterization.validity);
+        result.min_scaled_jacobian = report.quality.min_scaled_jacobian;
+        result.mean_scaled_jacobian = report.quality.mean_scaled_jacobian;
+        result.max_distance = report.max_distance;
         if (const std::string expected = iga::signature(reference_); result.signature != expected) {
             result.failure =
                 fmt::format("not isotopological: its signature is {}, that of the reference {}",
@@ -169,14 +232,16 @@ class Family {
             is_corner ? "node" : "arcs");
     }
 
-    void write(const MeshedMember& meshed, MemberResult& result) {
-        result.file = folder_ / (result.member.name + "_volume.xml");
-        io::write_splines(result.file, meshed.volume());
-        files_.push_back(result.file);
-        if (!has_pictures_) return;
+    void write(const MeshedMember& meshed, const MemberResult& result) {
+        files_.push_back(volume_file(result.member));
+        io::write_splines(files_.back(), meshed.volume());
+        if (has_pictures_) add_scene(result.member.name, meshed.volume());
+    }
+
+    void add_scene(const std::string& name, const iga::MultiPatch<3>& volume) {
         io::SceneOptions options;
-        options.title = result.member.name;
-        io::Scene scene = io::make_scene(iga::Space<3>(meshed.volume()), options);
+        options.title = name;
+        io::Scene scene = io::make_scene(iga::Space<3>(volume), options);
         constexpr int width = 400;
         constexpr int height = 300;
         scene.width = width;
@@ -201,7 +266,10 @@ class Family {
     fs::path folder_;
     std::string name_;
     bool has_pictures_;
-    std::string provenance_;
+    std::string job_;
+    fs::path progress_;
+    // Done by an earlier run.
+    std::vector<MemberResult> earlier_;
     std::vector<MemberResult> results_;
     std::vector<fs::path> files_;
     std::vector<io::Scene> scenes_;
@@ -212,65 +280,13 @@ class Family {
     meshing::FeatureImages images_;
 };
 
-ordered_json to_json(const meshing::HomologyReport& homology) {
-    return {{"corners", homology.n_corners},
-            {"curves", homology.n_curves},
-            {"points_per_curve", homology.points_per_curve},
-            {"max_corner_distance", homology.max_corner_distance},
-            {"worst_corner", homology.worst_corner},
-            {"max_curve_distance", homology.max_curve_distance},
-            {"worst_curve", homology.worst_curve},
-            {"homologous", homology.is_homologous()}};
-}
-
-ordered_json to_json(const MemberResult& result) {
-    ordered_json object = {{"name", result.member.name},
-                           {"parameters", result.member.parameters},
-                           {"status", result.failure.empty() ? "done" : "failed"},
-                           {"reason", result.failure},
-                           {"seconds", result.seconds}};
-    if (result.report) {
-        const auto& report = *result.report;
-        object["signature"] = result.signature;
-        object["certificate"] = iga::to_string(report.parameterization.validity);
-        object["min_scaled_jacobian"] = report.quality.min_scaled_jacobian;
-        object["mean_scaled_jacobian"] = report.quality.mean_scaled_jacobian;
-        object["max_distance"] = report.max_distance;
+// What a deck says beside its members.
+std::string job_of(const io::MeshDeck& deck, const MeshOptions& options) {
+    std::string text = deck.text;
+    for (const std::string& setting : options.overrides) {
+        if (!setting.starts_with("family.")) text += "\n" + setting;
     }
-    if (result.homology) object["homology"] = to_json(*result.homology);
-    if (result.to_reference) {
-        object["midpoint_with_reference"] = iga::to_string(*result.to_reference);
-        object["midpoint_with_previous"] = iga::to_string(*result.to_previous);
-    }
-    return object;
-}
-
-void print_member(const MemberResult& result) {
-    if (!result.failure.empty()) {
-        fmt::print("{:<20} {:7.2f}  failed: {}\n", result.member.name, result.seconds,
-                   result.failure);
-        return;
-    }
-    const auto& quality = result.report->quality;
-    fmt::print("{:<20} {:7.2f}  {}  {:.3f} {:.3f}", result.member.name, result.seconds,
-               result.signature, quality.min_scaled_jacobian, quality.mean_scaled_jacobian);
-    if (result.homology) {
-        fmt::print("  {:.1e} {:.1e}", result.homology->max_corner_distance,
-                   result.homology->max_curve_distance);
-    }
-    if (result.to_reference) {
-        fmt::print("  {} {}", iga::to_string(*result.to_reference),
-                   iga::to_string(*result.to_previous));
-    }
-    fmt::print("\n");
-}
-
-void print_text(const std::vector<MemberResult>& results) {
-    fmt::print(
-        "{:<20} {:>7}  {:<16}  scaled Jacobian from, mean; homology (corners, curves, of "
-        "the diagonal); midpoints with the reference, the one before\n",
-        "member", "s", "signature");
-    for (const MemberResult& result : results) print_member(result);
+    return fmt::format("couture {}; deck hash {}", COUTURE_VERSION, text_hash(text));
 }
 
 }  // namespace
@@ -279,39 +295,15 @@ int mesh_family(const io::MeshDeck& deck, const MeshOptions& options, const Comm
     const std::string name = deck.path.stem().string();
     const fs::path folder = options.out.empty() ? fs::path("out") / name : options.out;
     const Timer timer;
-    Family family(deck, folder, name, options.png,
-                  fmt::format("couture {} mesh {}; deck hash {}", COUTURE_VERSION, options.surface,
-                              fnv_hash(deck.text)));
+    Family family(deck, folder, name, options, job_of(deck, options));
     family.run();
-    const double seconds = timer.seconds();
-    const auto& results = family.results();
-    const auto n_failed = std::count_if(results.begin(), results.end(),
-                                        [](const auto& result) { return !result.failure.empty(); });
-    const auto n_folded = std::count_if(results.begin(), results.end(), [](const auto& result) {
-        return !result.has_certified_midpoints();
-    });
-    const bool is_done = n_failed == 0 && n_folded == 0;
+    const FamilySummary summary{deck.title, family.results(), timer.seconds(), family.files()};
     if (common.json) {
-        ordered_json object = {{"program", "couture " COUTURE_VERSION},
-                               {"status", is_done ? "done" : "failed"},
-                               {"title", deck.title},
-                               {"reference", results.front().member.name},
-                               {"signature", results.front().signature},
-                               {"failed_members", n_failed},
-                               {"failed_midpoints", n_folded}};
-        for (const MemberResult& result : results) object["members"].push_back(to_json(result));
-        object["seconds"] = seconds;
-        object["warnings"] = log::warnings();
-        for (const fs::path& file : family.files()) object["files"].push_back(file.string());
-        fmt::print("{}\n", object.dump(2));
+        fmt::print("{}\n", family_json(summary));
     } else if (!common.quiet) {
-        print_text(results);
-        fmt::print("{} of {} members done, midpoints of {} not certified\n",
-                   results.size() - n_failed, results.size(), n_folded);
-        fmt::print("{:.1f} s; wrote {} files to {}\n", seconds, family.files().size(),
-                   folder.string());
+        print_family(summary, folder);
     }
-    return is_done ? ExitCode::done : ExitCode::run_failed;
+    return summary.is_done() ? ExitCode::done : ExitCode::run_failed;
 }
 
 }  // namespace couture::drivers

@@ -4,12 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "drivers/hex_files.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "iga/topology/element_quality.h"
-#include "io/atomic_file.h"
-#include "io/calculix.h"
 #include "io/spline_file.h"
 #include "io/vtk_writer.h"
 #include "meshing/volume/hex_sampling.h"
@@ -28,11 +27,12 @@ void check_options(const MeshOptions& options) {
                          options.surface,
                          options.stage.empty() ? "" : fmt::format(", not {}", options.stage));
     }
-    const bool has_more =
-        !options.overrides.empty() || options.edge_length != 0.0 || options.feature_angle ||
-        !options.cycle_weights.empty() || !options.merge_weights.empty() || !options.open.empty() ||
-        !options.open_at.empty() || !options.open_facing.empty() || options.most_boundaries ||
-        !options.like.empty() || options.fix || options.fill_holes || options.shell || options.png;
+    const bool has_more = !options.overrides.empty() || options.edge_length != 0.0 ||
+                          options.feature_angle || !options.cycle_weights.empty() ||
+                          !options.merge_weights.empty() || !options.open.empty() ||
+                          !options.open_at.empty() || !options.open_facing.empty() ||
+                          options.most_boundaries || !options.like.empty() || options.fix ||
+                          options.fill_holes || options.shell || options.png || options.resume;
     if (has_more) {
         throw InputError(
             "mesh: {} is a spline file: only --stage, --points and --out are options; the others "
@@ -172,16 +172,11 @@ class SplineMeshing {
         const auto sampled = meshing::sample_hexahedra(volume, options_.n_points);
         object_["hexes"] = summary(sampled.hexahedra, sampled.report);
         judge("hexahedra", sampled.report);
-        const io::HexMesh mesh = io::make_hexahedra(iga::Space<3>(sampled.hexahedra));
-        object_["hexes"]["nodes"] = mesh.nodes.rows();
-        object_["hexes"]["elements"] = mesh.elements.rows();
-        std::vector<std::vector<int>> cells;
-        for (long e = 0; e < mesh.elements.rows(); ++e) {
-            auto& cell = cells.emplace_back();
-            for (const int node : mesh.elements.row(e)) cell.push_back(node);
-        }
-        io::write_points_vtu(path("hexes", ".vtu"), mesh.nodes, {}, provenance_, cells);
-        io::write_text(path("hexes", ".inp"), io::to_calculix(mesh, provenance_));
+        const HexFiles written =
+            write_hexahedra(folder_ / fmt::format("{}_hexes", stem_), sampled, provenance_);
+        object_["hexes"]["nodes"] = written.n_nodes;
+        object_["hexes"]["elements"] = written.n_elements;
+        for (const auto& file : written.files) files_.push_back(file.string());
     }
 
     void judge(const char* what, const meshing::ParameterizationReport& report) {

@@ -12,12 +12,13 @@
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/did_you_mean.h"
+#include "io/named_layout_file.h"
 #include "io/pants_file.h"
-#include "io/picture.h"
 #include "io/surface_writer.h"
 #include "io/template_file.h"
 #include "io/volumetric_layout_file.h"
 #include "meshing/layout/place_layout.h"
+#include "meshing/layout/snap_nodes.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 #include "meshing/surface/cut_surface.h"
@@ -29,8 +30,9 @@ namespace {
 
 using namespace meshing;
 
-constexpr std::array<const char*, 9> stage_names{"surface", "features", "loops", "pants", "layout",
-                                                 "field",   "map",      "quads", "volume"};
+constexpr std::array<const char*, 11> stage_names{"surface",  "features", "loops", "pants",
+                                                  "layout",   "field",    "map",   "quads",
+                                                  "surfaces", "volume",   "hexes"};
 
 // Weight of sharp edges in the criterion of cycles if the deck gives none and cuboids are to
 // follow: cuts cross them.
@@ -205,8 +207,23 @@ io::Scene make_curvature_scene(SurfaceMesh mesh) {
     return scene;
 }
 
+// A layout that was written by hand.
+CuboidDecomposition place_named(const io::MeshDeck& deck, const MeshStages& stages,
+                                const Landmarks& landmarks) {
+    const io::NamedLayout layout =
+        io::read_named_layout(deck.layout, landmarks.corners, deck.units);
+    constexpr double relative_tolerance = 0.01;
+    const double tolerance =
+        layout.tolerance.value_or(relative_tolerance * bounding_box_diagonal(stages.mesh));
+    SurfaceMesh mesh = stages.mesh;
+    const PlacedLayout placed =
+        snap_nodes(mesh, stages.features, layout.placed, layout.names, tolerance);
+    return place_layout(mesh, stages.features, placed, tolerance);
+}
+
 // The deck's own layout, placed on the surface. Warns of features that it leaves out.
-CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages) {
+CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages,
+                                   const Landmarks& landmarks) {
     if (stages.invariants.n_boundaries > 0) {
         throw InputError(
             "mesh: a layout of one's own ([meshing] layout, --layout) needs a closed surface, this "
@@ -214,7 +231,9 @@ CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& s
             stages.invariants.n_boundaries);
     }
     CuboidDecomposition cuboids =
-        place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
+        deck.layout.extension() == ".toml"
+            ? place_named(deck, stages, landmarks)
+            : place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
     double length = 0.0;
     for (const FeatureCurve& curve : stages.features.curves) length += curve.length;
     const double untied = untied_length(cuboids);
@@ -281,6 +300,13 @@ MeshStage read_mesh_stage(const std::string& name) {
 std::string to_string(MeshStage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
 MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file) {
+    MeshStages stages;
+    run_mesh_stages(deck, problems_file, stages);
+    return stages;
+}
+
+void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file,
+                     MeshStages& stages) {
     const MeshStage last = read_mesh_stage(deck.stage);
     PreparedSurface surface = prepare_surface(deck, problems_file);
     PantsOptions options = pants_options(deck, surface);
@@ -291,24 +317,29 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         last_said = timer.seconds();
         log::info(fmt::format("mesh: {} ({:.0f} %, {:.0f} s)", what, 100.0 * fraction, last_said));
     };
-    MeshStages stages;
+    stages = {};
     if (last >= MeshStage::features) stages.features = find_features(deck, surface);
     stages.mesh = std::move(surface.mesh);
     stages.part = std::move(surface.part);
     stages.invariants = compute_invariants(stages.mesh);
     stages.surface_name = surface_name(stages.mesh);
     check_gauss_bonnet(stages.mesh);
-    if (last < MeshStage::loops) return stages;
+    if (last < MeshStage::loops) return;
     meshing::SolidMeshOptions solid = deck.solid;
     solid.progress = [&](std::string_view what) {
         log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
     };
     solid.faces = std::move(surface.faces);
     if (last > MeshStage::pants) solid.last = solid_stage(last);
+    const auto run_solid = [&](CuboidDecomposition cuboids) {
+        // What is left if mesh_solid throws.
+        stages.solid.emplace().cuboids = cuboids;
+        stages.solid = mesh_solid(std::move(cuboids), solid);
+    };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
-        stages.solid = mesh_solid(placed_cuboids(deck, stages), solid);
-        return stages;
+        run_solid(placed_cuboids(deck, stages, surface.landmarks));
+        return;
     }
     std::optional<ClosingCaps> caps = surface.caps;
     if (last > MeshStage::pants) {
@@ -325,7 +356,7 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
     }
     if (last >= MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
-    if (last <= MeshStage::pants) return stages;
+    if (last <= MeshStage::pants) return;
     TemplateLibrary library = io::built_in_templates();
     if (!deck.templates.empty()) io::add_templates(deck.templates, library);
     solid.progress("choosing and drawing cuboids");
@@ -338,8 +369,34 @@ MeshStages run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path
         return repeat_cuboids(stages.mesh, stages.features, *stages.pants, *caps, library,
                               carry_over(*surface.record->layout, warp));
     };
-    stages.solid = mesh_solid(cuboids(), solid);
-    return stages;
+    run_solid(cuboids());
+}
+
+std::optional<MeshStage> reached_stage(const MeshStages& stages) {
+    if (stages.solid) {
+        if (stages.solid->volume) return MeshStage::volume;
+        return stages.solid->quads ? MeshStage::quads : MeshStage::layout;
+    }
+    if (stages.pants) return MeshStage::pants;
+    if (stages.mesh.n_faces() == 0) return {};
+    return stages.features.curves.empty() ? MeshStage::surface : MeshStage::features;
+}
+
+io::Scene stage_scene(const MeshStages& stages, MeshStage stage) {
+    if (stage > MeshStage::pants) {
+        io::Scene scene = solid_scene(*stages.solid, solid_stage(stage));
+        scene.title = to_string(stage);
+        return scene;
+    }
+    return stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
+                                       : make_scene(stages, stage, lines_of(stages, stage));
+}
+
+void write_stage_picture(const std::filesystem::path& path, const MeshStages& stages,
+                         MeshStage stage) {
+    io::Scene scene = stage_scene(stages, stage);
+    if (stage > MeshStage::pants) scene.title = path.stem().string();
+    io::render_png(path, scene);
 }
 
 std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path& stem,
@@ -348,7 +405,7 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (stage > MeshStage::pants) {
         std::vector<std::filesystem::path> files =
             write_solid_stage(stem, *stages.solid, solid_stage(stage), png, provenance);
-        if (stage == MeshStage::layout) {
+        if (stage == MeshStage::layout && stages.record) {
             files.push_back(stem.string() + ".json");
             io::write_layout_record(files.back(), *stages.record, stages.solid->cuboids.record,
                                     provenance);
@@ -377,8 +434,7 @@ std::vector<std::filesystem::path> write_mesh_stage(const std::filesystem::path&
     if (png) {
         std::filesystem::path picture = stem;
         picture += ".png";
-        io::render_png(picture, stage == MeshStage::surface ? make_curvature_scene(stages.mesh)
-                                                            : make_scene(stages, stage, lines));
+        write_stage_picture(picture, stages, stage);
         files.push_back(picture);
     }
     return files;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "io/picture.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/pipeline/solid_mesh.h"
 #include "meshing/surface/features.h"
@@ -16,7 +17,19 @@
 namespace couture::drivers {
 
 /// The stages of meshing, in order.
-enum class MeshStage { surface, features, loops, pants, layout, field, map, quads, volume };
+enum class MeshStage {
+    surface,
+    features,
+    loops,
+    pants,
+    layout,
+    field,
+    map,
+    quads,
+    surfaces,
+    volume,
+    hexes
+};
 
 /// @throws InputError  for a name that is no stage: names the nearest and lists all
 [[nodiscard]] MeshStage read_mesh_stage(const std::string& name);
@@ -43,6 +56,21 @@ struct MeshStages {
 /// @throws what the stages throw
 [[nodiscard]] MeshStages run_mesh_stages(const io::MeshDeck& deck,
                                          const std::filesystem::path& problems_file);
+/// The same into `stages`, which hold what was made up to a stage that throws.
+void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& problems_file,
+                     MeshStages& stages);
+
+/// The last stage that was made and can be drawn; nothing if there is no surface.
+[[nodiscard]] std::optional<MeshStage> reached_stage(const MeshStages& stages);
+
+/// Draws a stage; not the map.
+///
+/// @throws FileError  if it can't be written
+void write_stage_picture(const std::filesystem::path& path, const MeshStages& stages,
+                         MeshStage stage);
+
+/// The picture of a stage that was run; of the field only if it was made.
+[[nodiscard]] io::Scene stage_scene(const MeshStages& stages, MeshStage stage);
 
 /// Writes what a stage shows as STEM.vtp, and with `png` as STEM.png.
 ///

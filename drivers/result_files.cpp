@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "drivers/hash.h"
 #include "drivers/result_picture.h"
+#include "iga/core/text_hash.h"
 #include "iga/post/stress.h"
 #include "io/atomic_file.h"
 #include "io/vtk_writer.h"
@@ -64,7 +64,7 @@ std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
                        const GeometryCertificate& certificate) {
     nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
                                      {"deck", deck.path.filename().string()},
-                                     {"deck_hash", fnv_hash(deck.text)},
+                                     {"deck_hash", text_hash(deck.text)},
                                      {"deck_text", deck.text},
                                      {"signature", iga::signature(geometry)},
                                      {"certificate",
@@ -73,7 +73,7 @@ std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
                                        {"patch", certificate.patch}}}};
     if (!deck.geometry.file.empty()) {
         object["geometry_file"] = deck.geometry.file.filename().string();
-        object["geometry_hash"] = fnv_hash(io::read_text(deck.geometry.file));
+        object["geometry_hash"] = text_hash(io::read_text(deck.geometry.file));
     }
     return object.dump();
 }

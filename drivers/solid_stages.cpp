@@ -4,14 +4,16 @@
 #include <numbers>
 #include <string>
 
+#include "drivers/hex_files.h"
 #include "iga/topology/space.h"
 #include "io/obj_surface.h"
-#include "io/picture.h"
 #include "io/scene.h"
 #include "io/spline_file.h"
 #include "io/surface_writer.h"
 #include "meshing/field/face_frames.h"
+#include "meshing/field/streamline.h"
 #include "meshing/parameterization/sample_grid.h"
+#include "meshing/surface/predicates.h"
 
 namespace couture::drivers {
 
@@ -51,6 +53,27 @@ std::vector<io::SurfaceLine> arc_lines(const CuboidDecomposition& cuboids) {
     return lines;
 }
 
+// Some triangles of a soup.
+io::SurfacePiece piece_of(const TriangleSoup& soup,
+                          const std::vector<std::array<int, 3>>& triangles) {
+    io::SurfacePiece piece;
+    std::vector<int> number(soup.points.size(), -1);
+    std::vector<Vector3> points;
+    piece.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            int& n = number[triangles[t][k]];
+            if (n < 0) {
+                n = static_cast<int>(points.size());
+                points.push_back(soup.points[triangles[t][k]]);
+            }
+            piece.triangles(static_cast<Eigen::Index>(t), k) = n;
+        }
+    }
+    piece.vertices = rows_of(points);
+    return piece;
+}
+
 // The surface with a colour for each quad.
 io::Scene layout_scene(const CuboidDecomposition& cuboids) {
     io::Scene scene;
@@ -61,21 +84,7 @@ io::Scene layout_scene(const CuboidDecomposition& cuboids) {
         triangles[cuboids.surface.quad_of_face[f]].push_back(soup.triangles[f]);
     }
     for (int q = 0; q < n_quads; ++q) {
-        io::SurfacePiece piece;
-        std::vector<int> number(soup.points.size(), -1);
-        std::vector<Vector3> points;
-        piece.triangles.resize(static_cast<Eigen::Index>(triangles[q].size()), 3);
-        for (std::size_t t = 0; t < triangles[q].size(); ++t) {
-            for (int k = 0; k < 3; ++k) {
-                int& n = number[triangles[q][t][k]];
-                if (n < 0) {
-                    n = static_cast<int>(points.size());
-                    points.push_back(soup.points[triangles[q][t][k]]);
-                }
-                piece.triangles(static_cast<Eigen::Index>(t), k) = n;
-            }
-        }
-        piece.vertices = rows_of(points);
+        io::SurfacePiece piece = piece_of(soup, triangles[q]);
         piece.color = io::part_color(q);
         scene.surfaces.push_back(std::move(piece));
     }
@@ -179,20 +188,33 @@ io::SurfacePiece marker(const Vector3& center, double radius, const io::Color& c
     return piece;
 }
 
-// Crosses, so far apart that each can be seen, on the plain surface; singularities of positive
-// index red, others blue.
+const io::Color red{0.84, 0.15, 0.16};
+
+// The surface with the flipped triangles of its map.
+io::Scene flipped_scene(const SolidMesh& solid) {
+    const TriangleSoup soup = to_soup(solid.cuboids.mesh);
+    std::vector<std::array<int, 3>> good;
+    std::vector<std::array<int, 3>> flipped;
+    for (std::size_t f = 0; f < soup.triangles.size(); ++f) {
+        const auto& [a, b, c] = solid.map->corners[f];
+        (orientation(a, b, c) > 0 ? good : flipped).push_back(soup.triangles[f]);
+    }
+    io::Scene scene;
+    scene.surfaces = {piece_of(soup, good), piece_of(soup, flipped)};
+    scene.surfaces[1].color = red;
+    for (const io::SurfaceLine& line : arc_lines(solid.cuboids)) {
+        scene.curves.push_back({.points = rows_of(line.points), .width = 1.5});
+    }
+    return scene;
+}
+
+// Lines of the field through points so far apart that each can be seen, on the plain surface;
+// singularities of positive index red, others blue.
 io::Scene field_scene(const SolidMesh& solid) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     io::Scene scene;
     const TriangleSoup soup = to_soup(mesh);
-    io::SurfacePiece piece;
-    piece.vertices = rows_of(soup.points);
-    piece.triangles.resize(static_cast<Eigen::Index>(soup.triangles.size()), 3);
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        const auto& [a, b, c] = soup.triangles[t];
-        piece.triangles.row(static_cast<Eigen::Index>(t)) << a, b, c;
-    }
-    scene.surfaces.push_back(std::move(piece));
+    scene.surfaces.push_back(piece_of(soup, soup.triangles));
     const double spacing = bounding_box_diagonal(mesh) / 50.0;
     const FaceFrames frames(mesh);
     std::vector<Vector3> centers;
@@ -203,32 +225,60 @@ io::Scene field_scene(const SolidMesh& solid) {
             continue;
         }
         centers.push_back(center);
-        constexpr double lift = 0.05;
-        const Vector3 middle = center + lift * spacing * face_normal(mesh, face);
         for (int k = 0; k < 2; ++k) {
-            const double angle = solid.field->field.angles[face.idx()] + 0.5 * std::numbers::pi * k;
-            const Vector3 arm = 0.45 * spacing * frames.direction(face, angle);
-            scene.curves.push_back({.points = rows_of({middle - arm, middle + arm}),
-                                    .is_closed = false,
-                                    .color = {0.12, 0.14, 0.17},
-                                    .width = 1.5});
+            const auto half = [&](int direction) {
+                return trace_streamline(mesh, frames, solid.field->field, face, direction,
+                                        1.5 * spacing);
+            };
+            std::vector<Vector3> line = half(k + 2);
+            std::ranges::reverse(line);
+            const std::vector<Vector3> forwards = half(k);
+            line.insert(line.end(), forwards.begin() + 1, forwards.end());
+            if (line.size() < 2) continue;
+            scene.curves.push_back({.points = rows_of(line), .width = 1.2});
         }
     }
     for (const auto& [vertex, index] : solid.field->topology.singularities) {
-        const io::Color color =
-            index > 0 ? io::Color{0.84, 0.15, 0.16} : io::Color{0.10, 0.35, 0.80};
+        const io::Color color = index > 0 ? red : io::Color{0.10, 0.35, 0.80};
         scene.surfaces.push_back(marker(mesh.point(VertexHandle(vertex)), 0.5 * spacing, color));
     }
     return scene;
 }
 
+// With lines between elements.
+template <int d>
+io::Scene element_scene(const iga::MultiPatch<d>& multipatch) {
+    io::SceneOptions options;
+    options.element_lines = true;
+    return io::make_scene(iga::Space<d>(multipatch), options);
+}
+
 }  // namespace
+
+io::Scene solid_scene(const SolidMesh& solid, SolidStage stage) {
+    switch (stage) {
+        case SolidStage::field:
+            return field_scene(solid);
+        case SolidStage::map:
+            return solid.mapped_quads ? quad_scene(*solid.mapped_quads) : flipped_scene(solid);
+        case SolidStage::quads:
+            return quad_scene(*solid.quads);
+        case SolidStage::surfaces:
+            return element_scene(solid.surfaces->surfaces);
+        case SolidStage::volume:
+            return element_scene(solid.volume->volume);
+        case SolidStage::hexes:
+            return element_scene(solid.hexes->hexahedra);
+        default:
+            return layout_scene(solid.cuboids);
+    }
+}
 
 std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& solid,
                                         SolidStage stage, bool png, const std::string& provenance) {
     if (stage == SolidStage::field && !solid.field) return {};
+    if (stage == SolidStage::surfaces && !solid.surfaces) return {};
     std::vector<fs::path> files;
-    io::Scene scene;
     if (stage <= SolidStage::map) {
         std::vector<io::SurfaceArray> on_triangles{
             {"quad", column(solid.cuboids.surface.quad_of_face)}};
@@ -247,24 +297,24 @@ std::vector<fs::path> write_solid_stage(const fs::path& stem, const SolidMesh& s
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), to_soup(solid.cuboids.mesh), on_points, on_triangles,
                       arc_lines(solid.cuboids), provenance);
-        scene = stage == SolidStage::field ? field_scene(solid) : layout_scene(solid.cuboids);
     } else if (stage == SolidStage::quads) {
         const QuadMesh quads = to_quad_mesh(*solid.quads);
         files.push_back(with_extension(stem, ".vtp"));
         io::write_vtp(files.back(), quads, provenance);
         files.push_back(with_extension(stem, ".obj"));
         io::write_obj(files.back(), quads, provenance);
-        scene = quad_scene(*solid.quads);
-    } else {
+    } else if (stage == SolidStage::surfaces) {
+        files.push_back(with_extension(stem, ".xml"));
+        io::write_splines(files.back(), solid.surfaces->surfaces);
+    } else if (stage == SolidStage::volume) {
         files.push_back(with_extension(stem, ".xml"));
         io::write_splines(files.back(), solid.volume->volume);
-        const iga::Space<3> space(solid.volume->volume);
-        io::SceneOptions options;
-        options.element_lines = true;
-        scene = io::make_scene(space, options);
+    } else {
+        files = write_hexahedra(stem, *solid.hexes, provenance).files;
     }
-    if (png && stage != SolidStage::map) {
+    if (png) {
         files.push_back(with_extension(stem, ".png"));
+        io::Scene scene = solid_scene(solid, stage);
         scene.title = stem.stem().string();
         io::render_png(files.back(), scene);
     }

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "drivers/field_series.h"
-#include "drivers/hash.h"
 #include "drivers/job_geometry.h"
 #include "drivers/job_summary.h"
 #include "drivers/probes.h"
@@ -15,6 +14,7 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/solve/static_system.h"
 #include "io/atomic_file.h"
 
@@ -26,11 +26,11 @@ namespace {
 constexpr double time_rounding = 1e-9;
 
 io::StateOrigin origin_of(const io::Deck& deck, const std::string& signature) {
-    io::StateOrigin origin{deck.path.filename().string(), fnv_hash(deck.model_text), signature, "",
+    io::StateOrigin origin{deck.path.filename().string(), text_hash(deck.model_text), signature, "",
                            ""};
     if (!deck.geometry.file.empty()) {
         origin.geometry_file = deck.geometry.file.filename().string();
-        origin.geometry_hash = fnv_hash(io::read_text(deck.geometry.file));
+        origin.geometry_hash = text_hash(io::read_text(deck.geometry.file));
     }
     return origin;
 }

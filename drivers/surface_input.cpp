@@ -18,12 +18,6 @@ namespace {
 
 using meshing::FlawKind;
 
-bool is_part(const std::string& name) {
-    const auto& parts = meshing::part_surfaces();
-    return std::any_of(parts.begin(), parts.end(),
-                       [&](const meshing::PartInfo& part) { return part.name == name; });
-}
-
 void read_or_build(const std::string& command, const SurfaceInputOptions& options,
                    io::DescribedSurface& surface) {
     if (!is_part_input(options.surface)) {
@@ -103,7 +97,7 @@ std::pair<std::string, double> read_setting(const std::string& command, const st
 
 void require_file_or_part(const std::string& command, const std::string& name) {
     const std::filesystem::path path(name);
-    if (path.has_extension() || path.has_parent_path() || is_part(name) ||
+    if (path.has_extension() || path.has_parent_path() || is_part_input(name) ||
         std::filesystem::exists(path)) {
         return;
     }
@@ -115,7 +109,9 @@ void require_file_or_part(const std::string& command, const std::string& name) {
 }
 
 bool is_part_input(const std::string& name) {
-    return is_part(name) && !std::filesystem::exists(name);
+    const auto& parts = meshing::part_surfaces();
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](const meshing::PartInfo& part) { return part.name == name; });
 }
 
 bool is_surface_input(const std::string& name) {

@@ -40,10 +40,10 @@ struct SurfaceInputOptions {
                                                           const std::string& setting,
                                                           const char* option);
 
-/// Whether a name is that of a part, and no file's.
+/// Whether a name is that of a part: it comes before files and folders, which are `./NAME`.
 [[nodiscard]] bool is_part_input(const std::string& name);
 
-/// Whether a name is a surface file by its ending, or that of a part and no file's.
+/// Whether a name is a surface file by its ending, or that of a part.
 [[nodiscard]] bool is_surface_input(const std::string& name);
 
 /// @throws InputError  if a name is that of no file and no part, and has no ending: names the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "iga/core/error.h"
 #include "io/did_you_mean.h"
@@ -268,6 +269,22 @@ std::optional<double> Section::number(const std::string& key, const Dimension& d
                                       const Range& range) {
     const TomlNode* node = find(key);
     return node != nullptr ? to_number(*node, key, dimension, range) : std::nullopt;
+}
+
+std::optional<double> Section::angle(const std::string& key, const Range& degrees) {
+    constexpr double degree = std::numbers::pi / 180.0;
+    const TomlNode* node = find(key);
+    if (node == nullptr) return {};
+    const bool has_unit = node->kind == TomlNode::Kind::text && looks_like_quantity(node->text);
+    const auto value = to_number(*node, key, dimensions::none, has_unit ? any_number : degrees);
+    if (!value) return {};
+    const double in_degrees = has_unit ? *value / degree : *value;
+    if (!degrees.contains(in_degrees)) {
+        mistake(key, fmt::format("{} = {} degrees is out of range; it must be {}", name_of(key),
+                                 in_degrees, degrees.rule()));
+        return {};
+    }
+    return in_degrees * degree;
 }
 
 std::vector<double> Section::numbers(const std::string& key, const Dimension& dimension,

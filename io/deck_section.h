@@ -95,6 +95,10 @@ class Section {
     /// A number, a text with a unit, or a constant expression.
     [[nodiscard]] std::optional<double> number(const std::string& key, const Dimension& dimension,
                                                const Range& range = any_number);
+    /// An angle in radians: a number is in degrees, a text has its unit.
+    ///
+    /// @param degrees  where it must lie
+    [[nodiscard]] std::optional<double> angle(const std::string& key, const Range& degrees);
     /// A list of numbers; its length must be one of `sizes`.
     [[nodiscard]] std::vector<double> numbers(const std::string& key, const Dimension& dimension,
                                               const std::vector<int>& sizes,

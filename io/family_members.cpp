@@ -131,6 +131,17 @@ class Table {
     std::vector<FamilyMember> members_;
 };
 
+// @throws InputError  that the key names no member
+[[noreturn]] void throw_unknown(const MeshDeck& deck, const std::string& key,
+                                const std::string& name, const std::vector<FamilyMember>& members) {
+    std::vector<std::string> names;
+    for (const FamilyMember& member : members) names.push_back(member.name);
+    const std::string help = did_you_mean(name, names);
+    throw InputError("{}: [family] {} '{}' is none of the members{} There are {}",
+                     deck.path.filename().string(), key, name, help.empty() ? "." : help,
+                     quoted_list(names));
+}
+
 // The reference to the front.
 void order_members(const MeshDeck& deck, std::vector<FamilyMember>& members) {
     const std::string& name = deck.family->reference;
@@ -147,14 +158,7 @@ void order_members(const MeshDeck& deck, std::vector<FamilyMember>& members) {
     const auto reference =
         std::find_if(members.begin(), members.end(),
                      [&](const FamilyMember& member) { return member.name == wanted; });
-    if (reference == members.end()) {
-        std::vector<std::string> names;
-        for (const FamilyMember& member : members) names.push_back(member.name);
-        const std::string help = did_you_mean(wanted, names);
-        throw InputError("{}: [family] reference '{}' is none of the members{} There are {}",
-                         deck.path.filename().string(), wanted, help.empty() ? "." : help,
-                         quoted_list(names));
-    }
+    if (reference == members.end()) throw_unknown(deck, "reference", wanted, members);
     std::rotate(members.begin(), reference, reference + 1);
 }
 
@@ -192,10 +196,7 @@ std::vector<FamilyMember> star_design(const MeshDeck& deck) {
     return members;
 }
 
-}  // namespace
-
-std::vector<FamilyMember> family_members(const MeshDeck& deck) {
-    if (deck.family->parameters.empty()) return star_design(deck);
+std::vector<FamilyMember> listed_members(const MeshDeck& deck) {
     std::vector<FamilyMember> members = Table(deck.family->parameters).members();
     for (FamilyMember& member : members) {
         if (deck.part.empty() != !member.surface.empty()) {
@@ -213,6 +214,30 @@ std::vector<FamilyMember> family_members(const MeshDeck& deck) {
     }
     order_members(deck, members);
     return members;
+}
+
+// The reference and those that the deck names.
+std::vector<FamilyMember> chosen(const MeshDeck& deck, const std::vector<FamilyMember>& members) {
+    const std::vector<std::string>& names = deck.family->members;
+    for (const std::string& name : names) {
+        if (std::ranges::none_of(members, [&](const auto& one) { return one.name == name; })) {
+            throw_unknown(deck, "members", name, members);
+        }
+    }
+    std::vector<FamilyMember> some{members.front()};
+    std::copy_if(members.begin() + 1, members.end(), std::back_inserter(some),
+                 [&](const FamilyMember& member) {
+                     return std::ranges::find(names, member.name) != names.end();
+                 });
+    return some;
+}
+
+}  // namespace
+
+std::vector<FamilyMember> family_members(const MeshDeck& deck) {
+    std::vector<FamilyMember> members =
+        deck.family->parameters.empty() ? star_design(deck) : listed_members(deck);
+    return deck.family->members.empty() ? members : chosen(deck, members);
 }
 
 }  // namespace couture::io

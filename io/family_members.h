@@ -28,10 +28,12 @@ struct FamilyMember {
 /// Of the design star: that reference, and for each parameter of the part members at both ends of
 /// its range (PARAMETER_low, _high), at level 2 also half way to them (_low_half, _high_half).
 ///
+/// If the section names some members, only these and the reference.
+///
 /// @param deck  with a family
 /// @throws FileError   if the file can't be read
-/// @throws InputError  for what is wrong in it, with its line; for a reference that it does not
-///                     list, and for a design of what is no part or lacks ranges
+/// @throws InputError  for what is wrong in it, with its line; for a reference or members that it
+///                     does not list, and for a design of what is no part or lacks ranges
 [[nodiscard]] std::vector<FamilyMember> family_members(const MeshDeck& deck);
 
 }  // namespace couture::io

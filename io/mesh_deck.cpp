@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <numbers>
 
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
@@ -16,8 +15,6 @@ namespace couture::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 void read_existing_file(Section& section, const std::string& key, const fs::path& folder,
                         fs::path& path) {
@@ -122,7 +119,7 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     meshing::PantsOptions& pants = deck.pants;
     deck.stage = section
                      .choice("stage", {"surface", "features", "loops", "pants", "layout", "field",
-                                       "map", "quads", "volume"})
+                                       "map", "quads", "surfaces", "volume", "hexes"})
                      .value_or(deck.stage);
     deck.edge_length = section.number("edge_length", dimensions::length, positive).value_or(0.0);
     if (deck.edge_length > 0.0 && deck.part.empty()) {
@@ -135,12 +132,9 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     deck.shell = section.integer("shell", 0, most_shells);
     constexpr double flat = 180.0;
     const Range angles{.low = 0.0, .high = flat, .is_open = true};
-    if (const auto angle = section.number("feature_angle", dimensions::none, angles)) {
-        deck.features.angle = *angle * degree;
-    }
-    if (const auto angle = section.number("corner_angle", dimensions::none, angles)) {
-        deck.features.corner_angle = *angle * degree;
-    }
+    deck.features.angle = section.angle("feature_angle", angles).value_or(deck.features.angle);
+    deck.features.corner_angle =
+        section.angle("corner_angle", angles).value_or(deck.features.corner_angle);
     read_open(section, deck.open);
     read_criterion(section, "cycle", pants.cycle);
     read_criterion(section, "merge", pants.merge);
@@ -172,21 +166,32 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
     });
     meshing::SolidMeshOptions& solid = deck.solid;
     solid.element_size = section.number("element_size", dimensions::length, positive).value_or(0.0);
+    solid.tolerance =
+        section.number("tolerance", dimensions::none, positive).value_or(solid.tolerance);
     constexpr int most_elements = 1000;
     solid.min_elements =
         section.integer("min_elements", 1, most_elements).value_or(solid.min_elements);
     solid.volume.degree =
         section.integer("degree", 1, iga::max_degree).value_or(solid.volume.degree);
-    solid.is_aligned =
-        section.choice("parameterization", {"aligned", "harmonic"}).value_or("aligned") ==
-        "aligned";
+    const std::string route =
+        section.choice("parameterization", {"aligned", "quadratic", "harmonic"})
+            .value_or("aligned");
+    solid.route = route == "aligned"     ? meshing::LayoutMapRoute::aligned
+                  : route == "quadratic" ? meshing::LayoutMapRoute::quadratic
+                                         : meshing::LayoutMapRoute::harmonic;
+    constexpr int most_relocations = 10'000;
+    solid.max_relocations =
+        section.integer("relocations", 0, most_relocations).value_or(solid.max_relocations);
     solid.alignment = section.number("alignment", dimensions::none, {.low = 0.0, .high = 1e6})
                           .value_or(solid.alignment);
-    if (solid.alignment > 0.0 && !solid.is_aligned) {
+    if (solid.alignment > 0.0 && solid.route != meshing::LayoutMapRoute::aligned) {
         section.mistake("alignment",
-                        "'alignment' draws the optimised map to the cross field; it has no place "
-                        "beside parameterization = \"harmonic\"");
+                        fmt::format("'alignment' draws the aligned map to the cross field; it has "
+                                    "no place beside parameterization = \"{}\"",
+                                    route));
     }
+    constexpr int most_points = 1000;
+    solid.n_points = section.integer("points", 2, most_points);
     read_existing_file(section, "templates", folder, deck.templates);
     read_existing_file(section, "layout", folder, deck.layout);
     read_existing_file(section, "like", folder, deck.like);
@@ -194,6 +199,12 @@ void read_meshing(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.mistake("layout",
                         "'layout' takes the place of pants and templates: 'templates' and 'like' "
                         "have no place beside it");
+    }
+    if (!deck.layout.empty() && (deck.stage == "loops" || deck.stage == "pants")) {
+        section.mistake(
+            "layout", fmt::format("'layout' takes the place of pants: stage = \"{}\" has no place "
+                                  "beside it; write \"layout\" or a later one",
+                                  deck.stage));
     }
     if (!deck.like.empty() && !(pants.loops.empty() && deck.cycles_through.empty())) {
         section.mistake("like",
@@ -219,6 +230,7 @@ void read_family(Section& section, const fs::path& folder, MeshDeck& deck) {
         section.mistake("reference", "of a 'design' the deck's own geometry is the reference");
     }
     family.reference = section.text("reference").value_or("");
+    family.members = section.texts("members");
     if (!deck.like.empty()) {
         section.mistake("",
                         "[family] repeats its reference; 'like' of [meshing] has no place "

@@ -44,6 +44,8 @@ struct FamilySection {
     int level = 1;
     /// Name of the member whose layout is chosen and repeated; empty: the deck's own geometry.
     std::string reference;
+    /// Those that are meshed beside the reference; empty: all.
+    std::vector<std::string> members;
 };
 
 /// One job of meshing: a surface file or a part, and what is done with it.

@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 using namespace meshing;
 
 constexpr const char* format_name = "couture pants 2";
-constexpr const char* layout_format_name = "couture layout 1";
+constexpr const char* layout_format_name = "couture layout 2";
 constexpr const char* way_out =
     "take the NAME_pants.json or NAME_layout.json that 'couture mesh' wrote, or write it again by "
     "meshing that member";
@@ -259,6 +259,9 @@ LayoutRecord read_layout(const Node& node) {
         record.rotations[cut["cut"].count_below(largest_number)] =
             cut["rotation"].count_below(largest_number);
     }
+    for (const Node& start : node["starts"].items()) {
+        record.starts[start["curve"].count_below(largest_number)] = start["place"].vector();
+    }
     record.elements = node["elements"].counts_below(largest_number);
     for (const auto& [name, sides] : node["sets"].entries()) {
         auto& set = record.sets[name];
@@ -315,6 +318,10 @@ ordered_json to_json(const LayoutRecord& record) {
     for (const auto& [cut, rotation] : record.rotations) {
         rotations.push_back({{"cut", cut}, {"rotation", rotation}});
     }
+    auto starts = ordered_json::array();
+    for (const auto& [curve, place] : record.starts) {
+        starts.push_back({{"curve", curve}, {"place", to_json(place)}});
+    }
     auto sets = ordered_json::object();
     for (const auto& [name, sides] : record.sets) {
         auto& set = sets[name] = ordered_json::array();
@@ -324,6 +331,7 @@ ordered_json to_json(const LayoutRecord& record) {
     }
     return {{"patches", std::move(patches)},
             {"rotations", std::move(rotations)},
+            {"starts", std::move(starts)},
             {"elements", record.elements},
             {"sets", std::move(sets)}};
 }

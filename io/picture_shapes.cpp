@@ -79,7 +79,7 @@ void add_surface(vtkRenderer& renderer, const SurfacePiece& piece,
     mapper->InterpolateScalarsBeforeMappingOn();
     // Lines lie on surfaces: these step back a little.
     mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0);
+    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2.0, 4.0);
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     vtkProperty& look = *actor->GetProperty();

@@ -34,10 +34,9 @@ struct DescribedSurface {
 /// What `couture info FILE` prints of a surface: format, points, edges, triangles, Euler
 /// characteristic; whether it is closed; components with genus and boundaries; area, volume (of
 /// closed surfaces), bounding box, edges, smallest angle; sharp edges at 40 degrees, feature
-/// curves, corners and smooth faces; of a solid cavities and Betti numbers; of a part its corners by
-/// name, with positions; what reading, repair
-/// and fixing changed; problems with places. Components, features and the like are left out where
-/// the surface is no oriented manifold.
+/// curves, corners and smooth faces; of a solid cavities and Betti numbers; of a part its corners
+/// by name, with positions; what reading, repair and fixing changed; problems with places.
+/// Components, features and the like are left out where the surface is no oriented manifold.
 [[nodiscard]] std::string surface_info_text(const DescribedSurface& surface);
 
 /// The same for machines: one JSON object, indented by two. What is unknown is null.

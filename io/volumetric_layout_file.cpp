@@ -52,32 +52,6 @@ void turn_mirrored(const std::string& name, PlacedLayout& placed) {
     }
 }
 
-PlacedLayout make_layout(const std::string& name, const std::vector<Vector3>& points,
-                         std::vector<Hexahedron> hexahedra) {
-    if (hexahedra.empty()) throw FileError("{}: has no hexahedra", name);
-    std::vector<int> number(points.size(), -1);
-    for (const auto& corners : hexahedra) {
-        for (const int point : corners) number[point] = 0;
-    }
-    PlacedLayout placed;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (number[i] < 0) continue;
-        number[i] = placed.layout.n_nodes++;
-        placed.positions.push_back(points[i]);
-    }
-    for (auto& corners : hexahedra) {
-        for (int& point : corners) point = number[point];
-    }
-    placed.layout.cuboids = std::move(hexahedra);
-    turn_mirrored(name, placed);
-    try {
-        static_cast<void>(meshing::layout_boundary(placed.layout));
-    } catch (const Error& error) {
-        throw FileError("{}: {}", name, error.what());
-    }
-    return placed;
-}
-
 /// Whole numbers of each entity of a Medit section that is passed over.
 std::optional<int> n_values_of(std::string_view section) {
     static const std::map<std::string_view, int> n_values{
@@ -101,6 +75,32 @@ std::optional<int> n_values_of(std::string_view section) {
 constexpr int any = std::numeric_limits<int>::max();
 
 }  // namespace
+
+PlacedLayout make_placed_layout(const std::string& name, const std::vector<Vector3>& points,
+                                std::vector<Hexahedron> hexahedra) {
+    if (hexahedra.empty()) throw FileError("{}: has no hexahedra", name);
+    std::vector<int> number(points.size(), -1);
+    for (const auto& corners : hexahedra) {
+        for (const int point : corners) number[point] = 0;
+    }
+    PlacedLayout placed;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (number[i] < 0) continue;
+        number[i] = placed.layout.n_nodes++;
+        placed.positions.push_back(points[i]);
+    }
+    for (auto& corners : hexahedra) {
+        for (int& point : corners) point = number[point];
+    }
+    placed.layout.cuboids = std::move(hexahedra);
+    turn_mirrored(name, placed);
+    try {
+        static_cast<void>(meshing::layout_boundary(placed.layout));
+    } catch (const Error& error) {
+        throw FileError("{}: {}", name, error.what());
+    }
+    return placed;
+}
 
 PlacedLayout parse_medit_layout(const std::string& name, std::string_view text) {
     TextCursor cursor(name, text);
@@ -135,7 +135,7 @@ PlacedLayout parse_medit_layout(const std::string& name, std::string_view text) 
                         in_quotes(section));
         }
     }
-    return make_layout(name, points, std::move(hexahedra));
+    return make_placed_layout(name, points, std::move(hexahedra));
 }
 
 PlacedLayout parse_vtk_layout(const std::string& name, std::string_view text) {
@@ -170,7 +170,7 @@ PlacedLayout parse_vtk_layout(const std::string& name, std::string_view text) {
     for (int i = 0; i < n_cells; ++i) {
         cursor.integer("a cell's type (12, a hexahedron)", hexahedron_type, hexahedron_type);
     }
-    return make_layout(name, points, std::move(hexahedra));
+    return make_placed_layout(name, points, std::move(hexahedra));
 }
 
 PlacedLayout read_volumetric_layout(const std::filesystem::path& path) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "meshing/layout/volumetric_layout.h"
 
@@ -17,6 +19,12 @@ namespace couture::io {
 ///                    hexahedron has no volume or a point twice; or the boundary is no manifold:
 ///                    names the file and the line or the hexahedron, counted from 0
 [[nodiscard]] meshing::PlacedLayout read_volumetric_layout(const std::filesystem::path& path);
+
+/// A layout of hexahedra between points; checked and turned as read_volumetric_layout says, whose
+/// errors it throws in the name of a file.
+[[nodiscard]] meshing::PlacedLayout make_placed_layout(const std::string& name,
+                                                       const std::vector<Vector3>& points,
+                                                       std::vector<std::array<int, 8>> hexahedra);
 
 /// The same for texts at hand; `name` is what messages call them.
 [[nodiscard]] meshing::PlacedLayout parse_medit_layout(const std::string& name,

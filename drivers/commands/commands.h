@@ -69,6 +69,8 @@ struct MeshOptions {
     /// Empty: out/<name> below the working folder.
     std::filesystem::path out;
     bool png = false;
+    /// Of a family: members that an earlier run has done are left as they are.
+    bool resume = false;
 };
 
 struct CompareOptions {

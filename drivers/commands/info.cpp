@@ -1,8 +1,10 @@
 #include <fmt/core.h>
 
 #include "drivers/commands/commands.h"
+#include "io/hex_mesh_info.h"
 #include "io/spline_info.h"
 #include "io/surface_info.h"
+#include "io/volumetric_layout_file.h"
 
 namespace couture::drivers {
 
@@ -14,6 +16,12 @@ int run_info(const SurfaceInputOptions& options, const CommonOptions& common) {
         return ExitCode::done;
     }
     require_file_or_part("info", options.surface);
+    if (io::is_hex_mesh_file(options.surface)) {
+        const meshing::PlacedLayout mesh = io::read_volumetric_layout(options.surface);
+        fmt::print("{}\n", common.json ? io::hex_mesh_info_json(mesh)
+                                       : io::hex_mesh_info_text(options.surface, mesh));
+        return ExitCode::done;
+    }
     const io::SplineFile file = io::read_splines(options.surface);
     fmt::print("{}\n", common.json ? io::spline_info_json(file) : io::spline_info_text(file));
     return ExitCode::done;

@@ -7,14 +7,16 @@
 #include <numbers>
 
 #include "drivers/commands/commands.h"
-#include "drivers/hash.h"
 #include "drivers/mesh_family.h"
 #include "drivers/mesh_splines.h"
 #include "drivers/mesh_stages.h"
+#include "drivers/stage_sheets.h"
 #include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
+#include "iga/topology/element_quality.h"
 #include "io/mesh_deck.h"
 #include "io/spline_file.h"
 #include "meshing/surface/curvature_clusters.h"
@@ -72,6 +74,9 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             if (!options.stage.empty()) {
                 all.push_back(fmt::format("meshing.stage=\"{}\"", options.stage));
             }
+            if (options.n_points) {
+                all.push_back(fmt::format("meshing.points={}", *options.n_points));
+            }
             return all;
         };
         const bool has_more =
@@ -82,7 +87,8 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             options.fix || options.fill_holes || options.shell;
         if (has_more) {
             throw InputError(
-                "mesh: with a deck only --stage, --set, --out and --png are options; write the "
+                "mesh: with a deck only --stage, --points, --set, --out and --png are options; "
+                "write the "
                 "others into its section [meshing], or --set meshing.KEY=VALUE");
         }
         return io::read_mesh_deck(options.surface, overrides());
@@ -135,8 +141,20 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     }
     deck.solid.element_size = options.element_size;
     deck.solid.volume.degree = options.degree.value_or(deck.solid.volume.degree);
+    deck.solid.n_points = options.n_points;
     deck.layout = options.layout;
     deck.like = options.like;
+    if (!deck.layout.empty() && !deck.like.empty()) {
+        throw InputError(
+            "mesh: --layout takes the place of the cuts and cuboids that --like repeats; give one "
+            "of them");
+    }
+    if (!deck.layout.empty() && (deck.stage == "loops" || deck.stage == "pants")) {
+        throw InputError(
+            "mesh: --layout takes the place of pants: stage {} has no place beside it; add --stage "
+            "layout or a later one",
+            deck.stage);
+    }
     if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
                                options.most_boundaries)) {
         throw InputError(
@@ -146,18 +164,63 @@ io::MeshDeck deck_of(const MeshOptions& options) {
     return deck;
 }
 
-bool is_certified(const meshing::SolidMesh& solid) {
-    return !solid.volume ||
-           solid.volume->report.parameterization.validity <= iga::Validity::degenerate;
+// The certificate of the last stage that has one.
+const meshing::ParameterizationReport* certificate(const meshing::SolidMesh& solid) {
+    if (solid.hexes) return &solid.hexes->report;
+    return solid.volume ? &solid.volume->report.parameterization : nullptr;
+}
+
+// What is not positive everywhere, or empty.
+std::string failure(const MeshStages& stages) {
+    const auto* report = stages.solid ? certificate(*stages.solid) : nullptr;
+    if (report == nullptr || report->validity <= iga::Validity::degenerate) return "";
+    return fmt::format("the {} {}: det J is not positive everywhere in patch {}",
+                       stages.solid->hexes ? "hexahedra are" : "volume is",
+                       iga::to_string(report->validity), report->worst_patch);
+}
+
+int n_hexahedra(const iga::MultiPatch<3>& hexahedra) {
+    int n = 0;
+    for (const auto& patch : hexahedra.patches) {
+        const auto [a, b, c] = patch.space().n_elements();
+        n += a * b * c;
+    }
+    return n;
+}
+
+nlohmann::ordered_json field_json(const meshing::SolidMesh& solid) {
+    const auto& [topology, field, report] = *solid.field;
+    const meshing::SurfaceMesh& mesh = solid.cuboids.mesh;
+    auto singularities = nlohmann::ordered_json::array();
+    for (const auto& [vertex, index] : topology.singularities) {
+        const Vector3& x = mesh.point(meshing::VertexHandle(vertex));
+        singularities.push_back({{"point", {x.x(), x.y(), x.z()}}, {"quarter_turns", index}});
+    }
+    return {
+        {"singularities", singularities},
+        {"boundary_turns", topology.boundary_turns},
+        {"generator_turns", topology.generator_turns},
+        {"freedom", meshing::topological_freedom(meshing::compute_invariants(mesh),
+                                                 static_cast<int>(topology.singularities.size()))},
+        {"topological_energy", report.topological_energy},
+        {"energy", report.energy},
+        {"feature_angle", report.feature_angle}};
 }
 
 void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) {
     object["layout"] = {{"cuboids", solid.cuboids.volume.n_cuboids()},
                         {"quads", solid.cuboids.surface.layout.n_quads()},
                         {"templates", solid.cuboids.templates}};
+    if (solid.field) object["field"] = field_json(solid);
     if (solid.map) {
         const auto& report = solid.map->report;
-        object["map"] = {{"energy", report.energies}, {"flipped", report.n_flipped}};
+        object["map"] = {{"energy", report.energies},
+                         {"flipped", report.n_flipped},
+                         {"max_angle_change", report.distortion.largest_angle_change},
+                         {"mean_angle_change", report.distortion.mean_angle_change},
+                         {"min_area_ratio", report.distortion.smallest_area_ratio},
+                         {"max_area_ratio", report.distortion.largest_area_ratio}};
+        if (solid.field) object["map"]["angle_to_field"] = report.mean_angle_to_directions;
     }
     if (solid.quads) {
         object["quads"] = {{"energy", solid.relocation->energies},
@@ -165,6 +228,14 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                            {"min_scaled_jacobian", solid.quad_quality->smallest_scaled_jacobian},
                            {"mean_scaled_jacobian", solid.quad_quality->mean_scaled_jacobian},
                            {"hausdorff", solid.quad_quality->hausdorff_distance}};
+    }
+    if (solid.surfaces) {
+        const auto& [surfaces, report] = *solid.surfaces;
+        object["surfaces"] = {{"patches", surfaces.n_patches()},
+                              {"control_points", surfaces.n_control_points()},
+                              {"area", iga::volume(surfaces)},
+                              {"max_distance", report.max_distance},
+                              {"rms_distance", report.rms_distance}};
     }
     if (!solid.volume) return;
     const auto& report = solid.volume->report;
@@ -176,6 +247,38 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                         {"mean_scaled_jacobian", report.quality.mean_scaled_jacobian},
                         {"hausdorff", solid.distance->surface},
                         {"hausdorff_features", solid.distance->features}};
+    if (!solid.hexes) return;
+    const auto quality = iga::element_quality(solid.hexes->hexahedra);
+    object["hexes"] = {{"elements", n_hexahedra(solid.hexes->hexahedra)},
+                       {"certificate", iga::to_string(solid.hexes->report.validity)},
+                       {"min_scaled_jacobian", quality.min_scaled_jacobian},
+                       {"mean_scaled_jacobian", quality.mean_scaled_jacobian}};
+}
+
+void add_pants(const MeshStages& stages, nlohmann::ordered_json& object) {
+    auto& curves = object["curves"] = nlohmann::ordered_json::array();
+    for (const auto& curve : stages.pants->curves) {
+        curves.push_back({{"kind", std::string(meshing::to_string(curve.kind))},
+                          {"name", curve.name},
+                          {"length", curve.length},
+                          {"vertices", curve.curve.vertices.size()}});
+    }
+    auto& tunnels = object["tunnels"] = nlohmann::ordered_json::array();
+    for (const auto& tunnel : stages.pants->tunnels) {
+        double length = 0.0;
+        for (std::size_t k = 0; k < tunnel.size(); ++k) {
+            length += (tunnel[(k + 1) % tunnel.size()] - tunnel[k]).norm();
+        }
+        tunnels.push_back(length);
+    }
+    auto& patches = object["patches"] = nlohmann::ordered_json::array();
+    for (const auto& patch : stages.pants->patches) {
+        auto sides = nlohmann::ordered_json::array();
+        for (const auto& side : patch.boundary) {
+            sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
+        }
+        patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
+    }
 }
 
 nlohmann::ordered_json to_json(const MeshStages& stages) {
@@ -205,30 +308,7 @@ nlohmann::ordered_json to_json(const MeshStages& stages) {
     object["features"] = {{"curves", stages.features.curves.size()},
                           {"corners", stages.features.corners.size()},
                           {"faces", stages.features.regions.size()}};
-    if (!stages.pants) return object;
-    auto& curves = object["curves"] = nlohmann::ordered_json::array();
-    for (const auto& curve : stages.pants->curves) {
-        curves.push_back({{"kind", std::string(meshing::to_string(curve.kind))},
-                          {"name", curve.name},
-                          {"length", curve.length},
-                          {"vertices", curve.curve.vertices.size()}});
-    }
-    auto& tunnels = object["tunnels"] = nlohmann::ordered_json::array();
-    for (const auto& tunnel : stages.pants->tunnels) {
-        double length = 0.0;
-        for (std::size_t k = 0; k < tunnel.size(); ++k) {
-            length += (tunnel[(k + 1) % tunnel.size()] - tunnel[k]).norm();
-        }
-        tunnels.push_back(length);
-    }
-    auto& patches = object["patches"] = nlohmann::ordered_json::array();
-    for (const auto& patch : stages.pants->patches) {
-        auto sides = nlohmann::ordered_json::array();
-        for (const auto& side : patch.boundary) {
-            sides.push_back({{"curve", side.curve}, {"left", side.is_left}});
-        }
-        patches.push_back({{"shell", patch.shell}, {"genus", patch.genus}, {"boundary", sides}});
-    }
+    if (stages.pants) add_pants(stages, object);
     if (stages.solid) add_solid(*stages.solid, object);
     return object;
 }
@@ -280,6 +360,11 @@ void print_solid(const meshing::SolidMesh& solid) {
             quality.smallest_scaled_jacobian, quality.mean_scaled_jacobian,
             quality.hausdorff_distance);
     }
+    if (solid.surfaces) {
+        const auto& [surfaces, report] = *solid.surfaces;
+        fmt::print("surfaces  {} patches, {} control points; {:.4g} from the surface at most\n",
+                   surfaces.n_patches(), surfaces.n_control_points(), report.max_distance);
+    }
     if (!solid.volume) return;
     const auto& report = solid.volume->report;
     fmt::print(
@@ -288,6 +373,11 @@ void print_solid(const meshing::SolidMesh& solid) {
         solid.volume->volume.n_patches(), solid.volume->volume.n_control_points(),
         iga::to_string(report.parameterization.validity), report.quality.min_scaled_jacobian,
         report.quality.mean_scaled_jacobian, solid.distance->surface, solid.distance->features);
+    if (!solid.hexes) return;
+    const auto quality = iga::element_quality(solid.hexes->hexahedra);
+    fmt::print("hexes     {} hexahedra; det J {}, scaled Jacobian from {:.3f}, mean {:.3f}\n",
+               n_hexahedra(solid.hexes->hexahedra), iga::to_string(solid.hexes->report.validity),
+               quality.min_scaled_jacobian, quality.mean_scaled_jacobian);
 }
 
 void print_pants(const MeshStages& stages, MeshStage last) {
@@ -322,12 +412,16 @@ void print_text(const MeshStages& stages, MeshStage last) {
 
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     if (io::is_spline_file(options.surface)) return mesh_splines(options, common);
-    if (options.n_points) {
-        throw InputError("mesh: --points is for spline files with --stage hexes; {} is none",
+    const io::MeshDeck deck = deck_of(options);
+    if (deck.solid.n_points && deck.stage != "hexes") {
+        throw InputError("mesh: {} points are for stage hexes, which samples them, not for {}",
+                         *deck.solid.n_points, deck.stage);
+    }
+    if (deck.family) return mesh_family(deck, options, common);
+    if (options.resume) {
+        throw InputError("mesh: --resume goes on with the members of a family; {} has no [family]",
                          options.surface);
     }
-    const io::MeshDeck deck = deck_of(options);
-    if (deck.family) return mesh_family(deck, options, common);
     const MeshStage last = read_mesh_stage(deck.stage);
 
     const std::string name = std::filesystem::path(options.surface).stem().string();
@@ -336,16 +430,12 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     const Timer timer;
     const MeshStages stages = run_mesh_stages(deck, folder / (name + "_problems.vtp"));
     const double seconds = timer.seconds();
-    const bool is_done = !stages.solid || is_certified(*stages.solid);
-    if (!is_done) {
-        log::warn(
-            fmt::format("the volume is {}: det J is not positive everywhere in patch {}",
-                        iga::to_string(stages.solid->volume->report.parameterization.validity),
-                        stages.solid->volume->report.parameterization.worst_patch));
-    }
+    const std::string not_positive = failure(stages);
+    const bool is_done = not_positive.empty();
+    if (!is_done) log::warn(not_positive);
     const std::string provenance =
         fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
-                    deck.text.empty() ? "" : fmt::format("; deck hash {}", fnv_hash(deck.text)));
+                    deck.text.empty() ? "" : fmt::format("; deck hash {}", text_hash(deck.text)));
     std::vector<std::string> files;
     for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
         const auto which = static_cast<MeshStage>(stage);
@@ -354,6 +444,11 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
         for (const auto& file :
              write_mesh_stage(folder / fmt::format("{}_{}", name, to_string(which)), stages, which,
                               options.png, provenance)) {
+            files.push_back(file.string());
+        }
+    }
+    if (options.png) {
+        for (const auto& file : write_stage_sheets(folder / name, stages)) {
             files.push_back(file.string());
         }
     }

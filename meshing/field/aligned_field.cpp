@@ -98,6 +98,18 @@ VectorX least_offsets(const SurfaceMesh& mesh, const Connection& connection,
     return held + offsets;
 }
 
+// Their principal curvatures are those of one of their sides.
+std::vector<bool> vertices_on_features(const SurfaceMesh& mesh) {
+    std::vector<bool> is_on_feature(mesh.n_vertices(), false);
+    for (const EdgeHandle edge : mesh.edges()) {
+        if (mesh.data(edge).feature < 0) continue;
+        const HalfedgeHandle h = mesh.halfedge_handle(edge, 0);
+        is_on_feature[mesh.from_vertex_handle(h).idx()] = true;
+        is_on_feature[mesh.to_vertex_handle(h).idx()] = true;
+    }
+    return is_on_feature;
+}
+
 }  // namespace
 
 DirectionField align_field(const SurfaceMesh& mesh, DirectionField field,
@@ -120,21 +132,26 @@ std::vector<AngleTarget> principal_targets(const SurfaceMesh& mesh, const Direct
                                            double strength) {
     const FaceFrames frames(mesh);
     const auto curvatures = principal_curvatures(mesh);
+    const std::vector<bool> is_sharp = vertices_on_features(mesh);
     std::vector<AngleTarget> targets;
     for (const FaceHandle face : mesh.faces()) {
         const Vector3 x = frames.direction(face, 0.0);
         const Vector3 y = frames.direction(face, 0.5 * std::numbers::pi);
         Matrix<2> tensor = Matrix<2>::Zero();
+        int n_corners = 0;
         const auto add = [&](double curvature, const Vector3& direction) {
             const Vector2 d(direction.dot(x), direction.dot(y));
-            tensor += curvature / 3.0 * d * d.transpose();
+            tensor += curvature * d * d.transpose();
         };
         for (const VertexHandle v : mesh.fv_range(face)) {
+            if (is_sharp[v.idx()]) continue;
             const PrincipalCurvatures& k = curvatures[v.idx()];
+            ++n_corners;
             add(k.minimum, k.minimum_direction);
             add(k.maximum, k.maximum_direction);
         }
-        const Eigen::SelfAdjointEigenSolver<Matrix<2>> axes(tensor);
+        if (n_corners == 0) continue;
+        const Eigen::SelfAdjointEigenSolver<Matrix<2>> axes(tensor / n_corners);
         const double anisotropy = axes.eigenvalues()[1] - axes.eigenvalues()[0];
         if (!(anisotropy > 0.0)) continue;
         const Vector2 axis = axes.eigenvectors().col(1);

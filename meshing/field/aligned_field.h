@@ -34,8 +34,9 @@ struct AngleTarget {
 ///
 ///     weight = strength area (k_max - k_min)^2,
 ///
-/// which does not depend on the mesh or on the unit. Only for crosses; none where the surface is
-/// bent the same in all directions.
+/// of the means over the face's vertices that are not on edges tagged as features, which does not
+/// depend on the mesh or on the unit. Only for crosses; none where there is no such vertex or the
+/// surface is bent the same in all directions.
 [[nodiscard]] std::vector<AngleTarget> principal_targets(const SurfaceMesh& mesh,
                                                          const DirectionField& field,
                                                          double strength);

@@ -1,8 +1,11 @@
 #include "meshing/field/layout_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "meshing/field/aligned_field.h"
 #include "meshing/field/layout_topology.h"
@@ -51,7 +54,78 @@ std::vector<bool> feature_edges(const SurfaceMesh& mesh, const EmbeddedLayout& e
     return is_feature;
 }
 
+constexpr double quarter = 0.5 * std::numbers::pi;
+
+// For each edge how many quarter turns the chart on the right of its halfedge 0 is turned against
+// the one on its left.
+std::vector<int> chart_turns(const SurfaceMesh& mesh, const EmbeddedLayout& embedding) {
+    std::vector<int> turns(mesh.n_edges(), 0);
+    for (int a = 0; a < embedding.layout.n_arcs(); ++a) {
+        if (embedding.layout.is_boundary_arc(a)) continue;
+        const auto& [left, right] = embedding.layout.arc_quads(a);
+        const int across = right.side + 2 - left.side;
+        const auto& path = embedding.arcs[a];
+        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+            const HalfedgeHandle h = mesh.find_halfedge(path[i], path[i + 1]);
+            const EdgeHandle edge = mesh.edge_handle(h);
+            turns[edge.idx()] = mesh.halfedge_handle(edge, 0) == h ? across : -across;
+        }
+    }
+    return turns;
+}
+
+// Angles of first axes at the faces beside arcs, by the arcs themselves.
+std::vector<std::pair<FaceHandle, double>> axes_at_arcs(const SurfaceMesh& mesh,
+                                                        const EmbeddedLayout& embedding,
+                                                        const FaceFrames& frames) {
+    std::vector<std::pair<FaceHandle, double>> axes;
+    for (int a = 0; a < embedding.layout.n_arcs(); ++a) {
+        const auto& path = embedding.arcs[a];
+        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+            HalfedgeHandle h = mesh.find_halfedge(path[i], path[i + 1]);
+            for (const QuadLayout::ArcQuad& quad : embedding.layout.arc_quads(a)) {
+                if (quad.quad >= 0) {
+                    axes.emplace_back(mesh.face_handle(h), frames.angle(h) - quarter * quad.side);
+                }
+                h = mesh.opposite_halfedge_handle(h);
+            }
+        }
+    }
+    return axes;
+}
+
 }  // namespace
+
+std::vector<double> chart_directions(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
+                                     const DirectionField& field) {
+    const std::vector<int> turns = chart_turns(mesh, embedding);
+    const DualTree tree = make_dual_tree(mesh);
+    std::vector<double> angles = field.angles;
+    std::vector<int> quarters(mesh.n_faces(), 0);
+    for (const FaceHandle face : tree.order) {
+        const HalfedgeHandle h = tree.crossed[face.idx()];
+        if (!h.is_valid()) continue;
+        const EdgeHandle edge = mesh.edge_handle(h);
+        const int sign = mesh.halfedge_handle(edge, 0) == h ? 1 : -1;
+        quarters[face.idx()] = quarters[mesh.face_handle(h).idx()] -
+                               sign * (field.period_jumps[edge.idx()] + turns[edge.idx()]);
+    }
+    for (std::size_t f = 0; f < angles.size(); ++f) angles[f] += quarter * quarters[f];
+
+    // Votes of the arcs' edges for the quarter turn of each component.
+    const std::vector<int> component = face_components(mesh);
+    std::vector<std::array<int, 4>> votes(angles.size(), {0, 0, 0, 0});
+    for (const auto& [face, axis] : axes_at_arcs(mesh, embedding, FaceFrames(mesh))) {
+        const auto n = std::lround((axis - angles[face.idx()]) / quarter);
+        ++votes[component[face.idx()]][static_cast<std::size_t>((n % 4 + 4) % 4)];
+    }
+    for (std::size_t f = 0; f < angles.size(); ++f) {
+        const auto& of_component = votes[component[f]];
+        angles[f] += quarter * static_cast<double>(std::ranges::max_element(of_component) -
+                                                   of_component.begin());
+    }
+    return angles;
+}
 
 LayoutField make_layout_field(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                               const LayoutFieldOptions& options) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "meshing/field/direction_field.h"
 #include "meshing/layout/embedded_layout.h"
 
@@ -35,5 +37,16 @@ struct LayoutField {
 [[nodiscard]] LayoutField make_layout_field(const SurfaceMesh& mesh,
                                             const EmbeddedLayout& embedding,
                                             const LayoutFieldOptions& options = {});
+
+/// For each face the angle, in its frame, of that direction of the field that belongs to the first
+/// axis of its quad's chart (along side 0 from corner 0): carried from face to face by the field's
+/// period jumps and over arcs by the sides of quads, so that it does not depend on where the
+/// directions of the field and the sides of quads point. One quarter turn for each component is
+/// chosen, that which is nearest to its arcs.
+///
+/// @param field  with the topology of the layout (make_layout_field)
+[[nodiscard]] std::vector<double> chart_directions(const SurfaceMesh& mesh,
+                                                   const EmbeddedLayout& embedding,
+                                                   const DirectionField& field);
 
 }  // namespace couture::meshing

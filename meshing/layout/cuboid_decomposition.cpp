@@ -6,6 +6,7 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/layout/cut_turns.h"
 #include "meshing/layout/equator.h"
 #include "meshing/layout/glue.h"
 #include "meshing/layout/layout_choice.h"
@@ -247,8 +248,9 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
                                            const PantsDecomposition& pants, const ClosingCaps& caps,
                                            const TemplateLibrary& library,
                                            const MatchOptions& options) {
-    const std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
-    const LayoutChoice choice = choose_layout(opened, patches, pants, library, options);
+    std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
+    LayoutChoice choice = choose_layout(opened, patches, pants, library, options);
+    turn_smooth_cuts(opened, pants, library, patches, choice);
     CuboidDecomposition result = Drawing(opened, patches, pants, caps, library, choice).run();
     result.record = record_layout(opened, patches, choice);
     result.record.sets = result.volume.sets;

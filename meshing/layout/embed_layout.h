@@ -17,7 +17,8 @@ struct LayoutTie {
     /// one at the last vertex, the others anywhere between, in this order.
     std::vector<int> nodes;
     bool is_feature = false;
-    /// Of a feature: whether the solid fills more than half a turn around it.
+    /// Of a feature: whether the solid fills too much around it for the corner of one cuboid; more
+    /// than half a turn always is.
     bool is_reflex = false;
     /// Named in messages.
     std::string name;

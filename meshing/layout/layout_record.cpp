@@ -1,8 +1,29 @@
 #include "meshing/layout/layout_record.h"
 
+#include <algorithm>
+
 #include "iga/core/error.h"
 
 namespace couture::meshing {
+
+namespace {
+
+// Turns a loop to begin at its vertex nearest to the recorded place; both sides of a cut find the
+// same one.
+void begin_near(const SurfaceMesh& opened, const LayoutRecord& record, PatchFeatures::Loop& loop) {
+    const auto start = record.starts.find(loop.side.curve);
+    if (start == record.starts.end()) {
+        throw TopologyError(
+            "layout: curve {} has no start in the record; there a sharp edge met it",
+            loop.side.curve);
+    }
+    const auto nearest = std::ranges::min_element(loop.vertices, {}, [&](VertexHandle v) {
+        return std::pair((opened.point(v) - start->second).norm(), v.idx());
+    });
+    std::ranges::rotate(loop.vertices, nearest);
+}
+
+}  // namespace
 
 LayoutRecord record_layout(const SurfaceMesh& opened, const std::vector<PatchFeatures>& patches,
                            const LayoutChoice& choice) {
@@ -10,6 +31,10 @@ LayoutRecord record_layout(const SurfaceMesh& opened, const std::vector<PatchFea
     for (std::size_t p = 0; p < patches.size(); ++p) {
         record.patches.push_back(
             {choice.templates[p], choice.matches[p], sketch_patch(opened, patches[p])});
+        for (const PatchFeatures::Loop& loop : patches[p].loops) {
+            if (!loop.nodes.empty()) continue;
+            record.starts[loop.side.curve] = opened.point(loop.vertices[0]);
+        }
     }
     record.rotations = choice.rotations;
     return record;
@@ -20,6 +45,7 @@ LayoutRecord carry_over(LayoutRecord record, const std::function<Vector3(const V
         for (PatchSketch::Node& node : patch.features.nodes) node.place = move(node.place);
         for (PatchSketch::Curve& curve : patch.features.curves) curve.middle = move(curve.middle);
     }
+    for (auto& [curve, place] : record.starts) place = move(place);
     return record;
 }
 
@@ -40,6 +66,9 @@ LayoutChoice repeat_choice(const SurfaceMesh& opened, const LayoutRecord& record
             patches[p] = in_order_of(recorded.features, match, patches[p]);
         } catch (const TopologyError& error) {
             throw TopologyError("layout: patch {}: {}", p, error.what());
+        }
+        for (PatchFeatures::Loop& loop : patches[p].loops) {
+            if (loop.nodes.empty()) begin_near(opened, record, loop);
         }
         choice.templates.push_back(recorded.shape);
         choice.matches.push_back(recorded.match);

@@ -25,6 +25,8 @@ struct LayoutRecord {
     std::vector<Patch> patches;
     /// For each cut, see TemplateChoice.
     std::map<int, int> rotations;
+    /// For each curve that no sharp edge meets: where its first node lies.
+    std::map<int, Vector3> starts;
     /// Of each sheet of cuboids, in the order of LayoutCells::sheets; empty until they are chosen.
     std::vector<int> elements;
     /// Of the volumetric layout.
@@ -50,7 +52,8 @@ struct MemberRecord {
 /// The recorded choice, for another member.
 ///
 /// @param record   carried over to that member
-/// @param patches  in the order of the record; their features are brought into its order
+/// @param patches  in the order of the record; their features are brought into its order, loops
+///                 without feature nodes begin near the recorded starts
 /// @throws TopologyError  if there are other patches, or their features don't match (names the
 ///                        patch, see match_sketches)
 [[nodiscard]] LayoutChoice repeat_choice(const SurfaceMesh& opened, const LayoutRecord& record,

@@ -1,6 +1,7 @@
 #include "meshing/layout/padded_ties.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "iga/core/error.h"
 #include "meshing/layout/padding.h"
@@ -69,16 +70,22 @@ PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> 
         }
         tie.nodes = std::move(nodes);
     }
-    return {std::move(padded.layout), std::move(ties)};
+    return {std::move(padded.layout), std::move(ties), std::move(padded.node_in_place)};
 }
 
 void draw_decomposition(const VolumetricLayout& volume, std::vector<LayoutTie> ties,
                         CuboidDecomposition& decomposition) {
     PaddedTies padded = pad_with_ties(volume, std::move(ties));
-    LayoutBoundary boundary = layout_boundary(padded.volume);
-    decomposition.volume = std::move(padded.volume);
+    draw_decomposition(std::move(padded.volume), std::span(std::as_const(padded.ties)),
+                       decomposition);
+}
+
+void draw_decomposition(VolumetricLayout padded, std::span<const LayoutTie> ties,
+                        CuboidDecomposition& decomposition) {
+    LayoutBoundary boundary = layout_boundary(padded);
+    decomposition.volume = std::move(padded);
     decomposition.sides = std::move(boundary.sides);
-    decomposition.surface = embed_layout(decomposition.mesh, boundary.layout, padded.ties);
+    decomposition.surface = embed_layout(decomposition.mesh, boundary.layout, ties);
 }
 
 }  // namespace couture::meshing

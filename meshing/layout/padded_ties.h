@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "meshing/layout/cuboid_decomposition.h"
@@ -12,6 +13,8 @@ namespace couture::meshing {
 struct PaddedTies {
     VolumetricLayout volume;
     std::vector<LayoutTie> ties;
+    /// For each node before padding that which lies in its place.
+    std::vector<int> node_in_place;
 };
 
 /// Arcs on ties of features that are not reflex are sharp, all others smooth (pad_layout). Nodes
@@ -24,8 +27,11 @@ struct PaddedTies {
 /// Pads a volume and draws its boundary along ties on the mesh of a decomposition; sets the
 /// decomposition's surface, volume and sides.
 ///
-/// @throws as pad_with_ties and embed_layout
+/// @throws TopologyError, GeometryError  as pad_with_ties and embed_layout
 void draw_decomposition(const VolumetricLayout& volume, std::vector<LayoutTie> ties,
+                        CuboidDecomposition& decomposition);
+/// The same for a volume that is padded.
+void draw_decomposition(VolumetricLayout padded, std::span<const LayoutTie> ties,
                         CuboidDecomposition& decomposition);
 
 }  // namespace couture::meshing

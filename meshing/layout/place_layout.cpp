@@ -13,6 +13,7 @@
 #include "iga/core/error.h"
 #include "meshing/layout/layout_region.h"
 #include "meshing/layout/padded_ties.h"
+#include "meshing/layout/tied_nodes.h"
 #include "meshing/surface/surface_curves.h"
 
 namespace couture::meshing {
@@ -26,6 +27,9 @@ constexpr double reach = 0.7;
 constexpr double sharp_angle = std::numbers::pi / 9.0;
 // An arc follows features if that is at most so many times as long as the straight line.
 constexpr double longest_detour = 1.8;
+// Interior angle of a wall at which two cuboids have corners as good as one has: beyond it
+// sin(angle / 2), their scaled Jacobian, is larger than sin(angle).
+constexpr double widest_corner = 2.0 * std::numbers::pi / 3.0;
 // Of the box's diagonal: edges of the surface that arcs can run along.
 constexpr double edge_part = 1.0 / 60.0;
 // What it costs to be off an arc's straight line by its length, relative to the length.
@@ -69,11 +73,10 @@ double distance_from(const Vector3& x, const Vector3& from, const Vector3& to) {
 // Finds paths on the surface for arcs of the layout.
 class Placer {
   public:
-    Placer(SurfaceMesh& mesh, const Features& features, const QuadLayout& layout,
-           const std::vector<Vector3>& positions)
+    Placer(SurfaceMesh& mesh, const QuadLayout& layout, std::vector<Vector3> positions)
         : mesh_(mesh),
           layout_(layout),
-          positions_(positions),
+          positions_(std::move(positions)),
           node_vertex_(layout.n_nodes()),
           is_on_feature_(layout.n_nodes(), false),
           is_drawn_(layout.n_arcs(), false),
@@ -83,20 +86,34 @@ class Placer {
           arcs_at_(layout.n_nodes()) {
         for (const auto edge : mesh.edges()) mesh.data(edge).curve = -1;
         measure_layout();
-        split_long_edges(mesh, edge_part * bounding_box_diagonal(mesh));
-        node_of_vertex_.assign(mesh.n_vertices(), -1);
-        place_on_corners(features);
-        place_on_curves();
     }
 
-    std::vector<LayoutTie> run() {
+    // Ties along features.
+    std::vector<LayoutTie> follow_features(const Features& features, double most_reach) {
+        const double longest_edge = edge_part * bounding_box_diagonal(mesh_);
+        split_long_edges(mesh_, longest_edge);
+        for (double& r : reach_) r = std::min(r, std::max(most_reach, longest_edge));
+        node_of_vertex_.assign(mesh_.n_vertices(), -1);
+        place_on_corners(features);
+        place_on_curves();
         draw_along_features();
         if (ties_.empty()) {
             throw TopologyError(
                 "layout: no sharp edge of the surface runs along an arc of the layout; the "
-                "layout's "
-                "nodes must lie near the surface's corners and sharp edges, in the same units");
+                "layout's nodes must lie near the surface's corners and sharp edges, in the same "
+                "units");
         }
+        return std::move(ties_);
+    }
+
+    // Those and what else cuts the surface into discs.
+    std::vector<LayoutTie> complete(std::vector<LayoutTie> ties) {
+        const std::vector<VertexHandle> vertices = place_tied_nodes(mesh_, layout_, ties);
+        node_of_vertex_.assign(mesh_.n_vertices(), -1);
+        for (int node = 0; node < layout_.n_nodes(); ++node) {
+            if (vertices[node].is_valid()) place(node, vertices[node]);
+        }
+        for (const LayoutTie& tie : ties) draw_tie(tie);
         split_chords();
         cut_into_discs();
         return std::move(ties_);
@@ -295,11 +312,25 @@ class Placer {
         return path;
     }
 
+    // Arc by arc.
+    void draw_tie(const LayoutTie& tie) {
+        auto start = tie.vertices.begin();
+        for (std::size_t k = 0; k + 1 < tie.nodes.size(); ++k) {
+            const auto end =
+                std::find(start + 1, tie.vertices.end(), node_vertex_[tie.nodes[k + 1]]);
+            const int from = tie.nodes[k];
+            const int to = tie.nodes[k + 1];
+            draw(layout_.find_arc(from, to), from, to,
+                 {.vertices = {start, end + 1}, .length = 0.0}, tie.is_feature);
+            start = end;
+        }
+    }
+
     void draw(int arc, int from, int to, Path path, bool is_on_feature) {
         LayoutTie tie{.vertices = path.vertices,
                       .nodes = {from, to},
                       .is_feature = is_on_feature,
-                      .is_reflex = is_on_feature && is_reflex(path.vertices),
+                      .is_reflex = is_on_feature && is_blunt(path.vertices),
                       .name = fmt::format("arc of nodes {} and {}", from, to)};
         for (std::size_t k = 0; k + 1 < path.vertices.size(); ++k) {
             mesh_
@@ -312,21 +343,29 @@ class Placer {
         ties_.push_back(std::move(tie));
     }
 
-    // Whether the solid fills more than half a turn around a tenth of a path or more.
-    [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
+    // Whether the solid fills more than the widest corner of one cuboid around a tenth of a path or
+    // more.
+    [[nodiscard]] bool is_blunt(const std::vector<VertexHandle>& path) const {
         constexpr double part = 0.1;
         double length = 0.0;
-        double reflex_length = 0.0;
+        double blunt_length = 0.0;
         for (std::size_t k = 0; k + 1 < path.size(); ++k) {
             const HalfedgeHandle h = mesh_.find_halfedge(path[k], path[k + 1]);
-            const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
-            const Vector3 right =
-                face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
-            const Vector3 along = mesh_.point(path[k + 1]) - mesh_.point(path[k]);
-            length += along.norm();
-            if (left.cross(right).dot(along) < 0.0) reflex_length += along.norm();
+            const double l = edge_length(mesh_, mesh_.edge_handle(h));
+            length += l;
+            if (interior_angle(h) > widest_corner) blunt_length += l;
         }
-        return reflex_length > part * length;
+        return blunt_length > part * length;
+    }
+
+    [[nodiscard]] double interior_angle(HalfedgeHandle h) const {
+        const Vector3 left = face_normal(mesh_, mesh_.face_handle(h));
+        const Vector3 right =
+            face_normal(mesh_, mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
+        const Vector3 along =
+            mesh_.point(mesh_.to_vertex_handle(h)) - mesh_.point(mesh_.from_vertex_handle(h));
+        return std::numbers::pi -
+               std::atan2(left.cross(right).dot(along.normalized()), left.dot(right));
     }
 
     // Arcs between nodes on features, the straightest first.
@@ -429,7 +468,7 @@ class Placer {
 
     SurfaceMesh& mesh_;
     const QuadLayout& layout_;
-    const std::vector<Vector3>& positions_;
+    const std::vector<Vector3> positions_;
     std::vector<VertexHandle> node_vertex_;
     std::vector<int> node_of_vertex_;
     std::vector<bool> is_on_feature_;
@@ -444,10 +483,35 @@ class Placer {
     std::vector<LayoutTie> ties_;
 };
 
+// Nodes in the place of old ones lie there; others on the boundary amid their neighbours.
+std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
+                                      const std::vector<int>& node_in_place,
+                                      const QuadLayout& boundary) {
+    std::vector<Vector3> padded(boundary.n_nodes(), Vector3::Zero());
+    std::vector<bool> is_known(boundary.n_nodes(), false);
+    for (std::size_t n = 0; n < node_in_place.size(); ++n) {
+        padded[node_in_place[n]] = positions[n];
+        is_known[node_in_place[n]] = true;
+    }
+    constexpr int n_sweeps = 100;
+    const std::vector<int> valences = boundary.valences();
+    for (int sweep = 0; sweep < n_sweeps; ++sweep) {
+        std::vector<Vector3> sums(boundary.n_nodes(), Vector3::Zero());
+        for (const QuadLayout::Arc& arc : boundary.arcs()) {
+            sums[arc.from] += padded[arc.to];
+            sums[arc.to] += padded[arc.from];
+        }
+        for (int n = 0; n < boundary.n_nodes(); ++n) {
+            if (!is_known[n] && valences[n] > 0) padded[n] = sums[n] / valences[n];
+        }
+    }
+    return padded;
+}
+
 }  // namespace
 
 CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& features,
-                                 const PlacedLayout& placed) {
+                                 const PlacedLayout& placed, double most_reach) {
     const LayoutBoundary boundary = layout_boundary(placed.layout);
     const int chi = static_cast<int>(mesh.n_vertices()) - static_cast<int>(mesh.n_edges()) +
                     static_cast<int>(mesh.n_faces());
@@ -459,17 +523,22 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     }
     CuboidDecomposition result;
     result.mesh = mesh;
-    std::vector<LayoutTie> ties =
-        Placer(result.mesh, features, boundary.layout, placed.positions).run();
+    std::vector<LayoutTie> feature_ties =
+        Placer(result.mesh, boundary.layout, placed.positions).follow_features(features, most_reach);
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::vector<bool> is_held(result.mesh.n_vertices(), false);
-    for (const LayoutTie& tie : ties) {
-        if (!tie.is_feature) continue;
+    for (const LayoutTie& tie : feature_ties) {
         is_held[tie.vertices.front().idx()] = true;
         is_held[tie.vertices.back().idx()] = true;
     }
-    draw_decomposition(placed.layout, std::move(ties), result);
+    PaddedTies padded = pad_with_ties(placed.layout, std::move(feature_ties));
+    const QuadLayout outside = layout_boundary(padded.volume).layout;
+    const std::vector<LayoutTie> ties =
+        Placer(result.mesh, outside,
+               padded_positions(placed.positions, padded.node_in_place, outside))
+            .complete(std::move(padded.ties));
+    draw_decomposition(std::move(padded.volume), ties, result);
     for (std::size_t n = 0; n < result.surface.nodes.size(); ++n) {
         const int vertex = result.surface.nodes[n].idx();
         if (vertex >= 0 && vertex < static_cast<int>(is_held.size()) && is_held[vertex]) {

@@ -127,13 +127,17 @@ class MapEnergy {
         double sum = 0.0;
         for (int f = 0; f < n_faces(); ++f) {
             const Matrix<2> F = gradient_of_map(x, f);
-            sum += flat_[f].area * (symmetric_dirichlet(F) + alignment(F, f));
+            sum += flat_[f].area * (distortion_of(F) + alignment(F, f));
         }
         return sum / total_area_;
     }
 
     /// Makes the cells' size that with the least energy; keeps it where the alignment forbids that.
     void fit_cell_size(const std::vector<Vector2>& x) {
+        if (is_quadratic()) {
+            fit_to_directions(x);
+            return;
+        }
         double squares = 0.0;
         double inverse_squares = 0.0;
         for (int f = 0; f < n_faces(); ++f) {
@@ -202,7 +206,7 @@ class MapEnergy {
         double sum = 0.0;
         for (int f = 0; f < n_faces(); ++f) {
             const Matrix<2> F = gradient_of_map(x, f);
-            const Matrix<2> target = nearest_frame(F, f);
+            const Matrix<2> target = frame(f);
             const Vector2 u = F.row(0).transpose();
             const Vector2 u_c = target.row(0).transpose();
             sum +=
@@ -212,8 +216,23 @@ class MapEnergy {
     }
 
   private:
-    [[nodiscard]] bool is_aligned() const {
-        return options_.directions.has_value() && options_.alignment_weight > 0.0;
+    [[nodiscard]] bool is_quadratic() const { return options_.route == LayoutMapRoute::quadratic; }
+    [[nodiscard]] double alignment_weight() const {
+        if (!options_.directions) return 0.0;
+        return is_quadratic() ? 1.0 : options_.alignment_weight;
+    }
+    [[nodiscard]] bool is_aligned() const { return alignment_weight() > 0.0; }
+
+    /// The size of cells of the least squares.
+    void fit_to_directions(const std::vector<Vector2>& x) {
+        double along = 0.0;
+        double squares = 0.0;
+        for (int f = 0; f < n_faces(); ++f) {
+            const Matrix<2> F = gradient_of_map(x, f);
+            along += flat_[f].area * F.cwiseProduct(frame(f)).sum();
+            squares += flat_[f].area * F.squaredNorm();
+        }
+        if (along > 0.0) cell_size_ *= along / squares;
     }
 
     /// Rows: gradients of u and v in the triangle's plane, times the wanted length of a cell.
@@ -224,30 +243,48 @@ class MapEnergy {
         return cell_size_ * lengths_[f].asDiagonal() * (uv * flat_[f].hats.transpose());
     }
 
-    /// The directions as gradients of u and v, turned by quarters to be nearest to F.
-    [[nodiscard]] Matrix<2> nearest_frame(const Matrix<2>& F, int f) const {
+    /// The directions as gradients of u and v.
+    [[nodiscard]] Matrix<2> frame(int f) const {
         const double angle = options_.directions->angles[f];
-        // Angle of the rotation nearest to F, whose rows are the gradients.
-        const double of_map = std::atan2(F(0, 1) - F(1, 0), F(0, 0) + F(1, 1));
-        constexpr double quarter = 0.5 * std::numbers::pi;
-        const double nearest = angle + quarter * std::round((of_map - angle) / quarter);
-        Matrix<2> frame;
-        frame << std::cos(nearest), std::sin(nearest), -std::sin(nearest), std::cos(nearest);
-        return frame;
+        Matrix<2> rows;
+        rows << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle);
+        return rows;
+    }
+
+    [[nodiscard]] double distortion_of(const Matrix<2>& F) const {
+        return is_quadratic() ? 0.0 : symmetric_dirichlet(F);
     }
 
     [[nodiscard]] double alignment(const Matrix<2>& F, int f) const {
-        return is_aligned() ? options_.alignment_weight * (F - nearest_frame(F, f)).squaredNorm()
-                            : 0.0;
+        return is_aligned() ? alignment_weight() * (F - frame(f)).squaredNorm() : 0.0;
+    }
+
+    /// Gradient of a triangle's energy by F and its Hessian by eigenvectors.
+    struct Term {
+        Matrix<2> gradient = Matrix<2>::Zero();
+        std::array<Matrix<2>, 4> modes;
+        std::array<double, 4> eigenvalues{};
+    };
+    [[nodiscard]] Term term(const Matrix<2>& F, int f) const {
+        Term result;
+        if (is_quadratic()) {
+            for (int k = 0; k < 4; ++k) {
+                result.modes[k].setZero();
+                result.modes[k](k / 2, k % 2) = 1.0;
+            }
+        } else {
+            const SymmetricDirichlet distortion(F);
+            result = {distortion.gradient, distortion.modes, distortion.eigenvalues};
+        }
+        if (is_aligned()) {
+            result.gradient += 2.0 * alignment_weight() * (F - frame(f));
+            for (double& value : result.eigenvalues) value += 2.0 * alignment_weight();
+        }
+        return result;
     }
 
     void add_triangle(const std::vector<Vector2>& x, int f, NewtonSystem& system) const {
-        const Matrix<2> F = gradient_of_map(x, f);
-        SymmetricDirichlet term(F);
-        if (is_aligned()) {
-            term.gradient += 2.0 * options_.alignment_weight * (F - nearest_frame(F, f));
-            for (double& value : term.eigenvalues) value += 2.0 * options_.alignment_weight;
-        }
+        const Term of_triangle = term(gradient_of_map(x, f), f);
         // d F / d x of a 2 x 2 matrix M, as six numbers: <M, dF> = row . dx.
         const auto pulled_back = [&](const Matrix<2>& M) {
             const Matrix<2, 3> of_corners =
@@ -262,10 +299,10 @@ class MapEnergy {
         const double weight = flat_[f].area / total_area_;
         Matrix<6> hessian = Matrix<6>::Zero();
         for (int m = 0; m < 4; ++m) {
-            const Vector<6> row = pulled_back(term.modes[m]);
-            hessian.noalias() += (weight * term.eigenvalues[m]) * row * row.transpose();
+            const Vector<6> row = pulled_back(of_triangle.modes[m]);
+            hessian.noalias() += (weight * of_triangle.eigenvalues[m]) * row * row.transpose();
         }
-        system.add(f, weight * pulled_back(term.gradient), hessian);
+        system.add(f, weight * pulled_back(of_triangle.gradient), hessian);
     }
 
     const SurfaceMesh& mesh_;
@@ -378,6 +415,21 @@ void minimise(MapEnergy& energy, const LayoutMapOptions& options, std::vector<Ve
     }
 }
 
+/// Least squares for one size of cells after the other.
+void minimise_squares(MapEnergy& energy, const LayoutMapOptions& options, std::vector<Vector2>& x,
+                      LayoutMapReport& report) {
+    NewtonSystem system = energy.make_system();
+    for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
+        energy.assemble(x, system);
+        const std::vector<Vector2> d = energy.spread(x, system.step()).first;
+        for (std::size_t v = 0; v < x.size(); ++v) x[v] = rounded(x[v] + d[v]);
+        energy.fit_cell_size(x);
+        const double before = report.energies.back();
+        report.energies.push_back(energy.value(x));
+        report.is_converged = before - report.energies.back() < options.tolerance * before;
+    }
+}
+
 void check_options(const SurfaceMesh& mesh, const QuadLayout& layout,
                    const LayoutMapOptions& options) {
     const std::vector<int> sheets = layout.sheets();
@@ -394,6 +446,9 @@ void check_options(const SurfaceMesh& mesh, const QuadLayout& layout,
                 "make_layout_map: the cells of sheet {} have length {}; it must be positive", s,
                 lengths[s]);
         }
+    }
+    if (options.route == LayoutMapRoute::quadratic && !options.directions) {
+        throw InputError("make_layout_map: the quadratic route needs directions; there are none");
     }
     if (options.directions && options.directions->angles.size() != mesh.n_faces()) {
         throw InputError("make_layout_map: {} directions for {} faces; give one for each",
@@ -444,7 +499,8 @@ LayoutMap make_layout_map(const SurfaceMesh& mesh, const EmbeddedLayout& embeddi
     }
     energy.fit_cell_size(x);
     map.report.energies.push_back(energy.value(x));
-    if (options.is_optimised) minimise(energy, options, x, map.report);
+    if (options.route == LayoutMapRoute::quadratic) minimise_squares(energy, options, x, map.report);
+    if (options.route == LayoutMapRoute::aligned) minimise(energy, options, x, map.report);
     map.report.n_flipped = energy.n_flipped(x);
     map.report.cell_size = energy.cell_size();
     map.report.distortion = energy.distortion(x);

@@ -11,21 +11,32 @@
 
 namespace couture::meshing {
 
-/// A cross of four directions in each face of a mesh, that a map is to follow.
+/// Two perpendicular directions in each face of a mesh that a map's axes are to follow.
 struct FaceDirections {
     /// For each face the angle, counter-clockwise, from its first edge (mesh.halfedge_handle(face))
-    /// to one of the directions, in radians.
+    /// to the direction that the first axis of its quad's chart is to take, in radians
+    /// (chart_directions).
     std::vector<double> angles;
 };
 
+/// How a map is made of those of the quads.
+enum class LayoutMapRoute {
+    /// They stay as they are, each harmonic on its own.
+    harmonic,
+    /// Least squares to the directions over the whole surface: triangles may flip.
+    quadratic,
+    /// Least distortion, drawn to the directions if there is a weight: no triangle flips.
+    aligned,
+};
+
 struct LayoutMapOptions {
-    /// Whether the map is optimised; else it stays that of the quads, each on its own.
-    bool is_optimised = true;
+    LayoutMapRoute route = LayoutMapRoute::aligned;
     /// Wanted length of a cell on the surface, next to that of the others, for each sheet; empty:
     /// the same for all, so that cells are to be squares.
     std::vector<double> cell_lengths;
-    /// Weight of the alignment with the directions, if there are some.
+    /// Weight of the alignment with the directions, if there are some, on the aligned route.
     double alignment_weight = 0.0;
+    /// The quadratic route needs them.
     std::optional<FaceDirections> directions;
     int max_iterations = 100;
     /// The optimisation ends when a step lowers the energy by less than this part of it.
@@ -33,7 +44,8 @@ struct LayoutMapOptions {
 };
 
 struct LayoutMapReport {
-    /// Of the start and after each step; 1 for an isometry with the wanted cells.
+    /// Of the start and after each step; for an isometry with the wanted cells along the directions
+    /// 1, on the quadratic route 0.
     std::vector<double> energies;
     bool is_converged = false;
     /// Triangles that don't turn counter-clockwise, by exact signs.
@@ -42,14 +54,15 @@ struct LayoutMapReport {
     /// lengths.
     double cell_size = 0.0;
     MapDistortion distortion;
-    /// Largest angle to the nearest of the directions, mean by area, in radians; zero without any.
+    /// Of the gradient of the first coordinate to its direction, mean by area, in radians; zero
+    /// without directions.
     double mean_angle_to_directions = 0.0;
 };
 
-/// A map of a surface to the charts of a layout: seamless, one-to-one, nodes at the corners of
-/// their charts. A face is mapped to the chart of its quad in the embedding, but may lie partly
-/// beyond its sides: arcs are where the images of the charts' sides come to lie, feature and
-/// boundary arcs where they were.
+/// A map of a surface to the charts of a layout: seamless, one-to-one if nothing is flipped, nodes
+/// at the corners of their charts. A face is mapped to the chart of its quad in the embedding, but
+/// may lie partly beyond its sides: arcs are where the images of the charts' sides come to lie,
+/// feature and boundary arcs where they were.
 struct LayoutMap {
     LayoutCharts charts;
     /// For each face its corners (in the order of face_vertices) in the chart of its quad.
@@ -75,12 +88,15 @@ int split_layout_chords(SurfaceMesh& mesh, EmbeddedLayout& embedding);
 ///
 /// @param embedding  without chords (split_layout_chords)
 /// @param cells      along each arc (cells_of_arcs)
-/// @throws InputError     if sizes don't match
+/// @throws InputError     if sizes don't match, or directions are missing
 /// @throws TopologyError  if an arc or a quad is not as the embedding says; names it
 /// @throws GeometryError  if the map of a quad is not one-to-one
 ///
-/// Source: [Maquart19] Eq. (4.14)-(4.17), [SmithSchaefer15]. Differs: there the quadratic energy
-/// alone is minimised, which may flip triangles.
+/// On the quadratic route the alignment energy alone is minimised, by as many linear solutions as
+/// the size of cells takes to settle; nothing keeps triangles from flipping, which are counted.
+///
+/// Source: [Maquart19] Eq. (4.14)-(4.17): the quadratic route; [SmithSchaefer15]. Differs: arcs
+/// keep to isoparametric curves because nodes are held at the corners of their charts.
 [[nodiscard]] LayoutMap make_layout_map(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                                         std::vector<int> cells,
                                         const LayoutMapOptions& options = {});

@@ -50,6 +50,9 @@ NewtonSystem::NewtonSystem(int n_unknowns, std::vector<Element> elements)
     factor_->matrix.columns.assign(rows, rows + matrix_.nonZeros());
     iga::SolverOptions options;
     options.name = "cholmod";
+    // Steps are searched along, so that they need not be exact; near-flat cells condition badly.
+    constexpr double inexact = 1e-6;
+    options.tolerance = inexact;
     factor_->solver = iga::make_linear_solver(options);
 }
 

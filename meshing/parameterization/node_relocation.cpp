@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "iga/core/error.h"
 #include "meshing/parameterization/newton_system.h"
@@ -110,44 +112,101 @@ class CellEnergy {
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
 
-    /// @param takes_lengths_only  the sum of squared lengths, which no inverted cell disturbs
-    void assemble(const SurfaceSlide::State& state, bool takes_lengths_only,
+    /// @param is_free  points that may move
+    void assemble(const SurfaceSlide::State& state, const std::vector<bool>& is_free,
                   NewtonSystem& system) const {
         system.set_zero();
-        const double weight = 1.0 / static_cast<double>(corners_.size());
         for (std::size_t c = 0; c < corners_.size(); ++c) {
-            const CellCorner& corner = corners_[c];
-            const Matrix<3, 2> plane = tangent_plane(state, corner);
-            const Matrix<2> F = gradient(state, corner);
-            const Matrix<3, 2> edges = scaled_edges(corner);
-            const auto pulled_back = [&](const Matrix<2>& M) {
-                const Matrix<3> of_points = plane * M * edges.transpose();
-                Vector<6> row;
-                for (int i = 0; i < 3; ++i) {
-                    row.segment<2>(2 * i) =
-                        state.directions[corner.points[i]].transpose() * of_points.col(i);
-                }
-                return row;
-            };
-            if (takes_lengths_only) {
-                Matrix<6> hessian = Matrix<6>::Zero();
-                for (int m = 0; m < 4; ++m) {
-                    Matrix<2> unit = Matrix<2>::Zero();
-                    unit(m / 2, m % 2) = 1.0;
-                    const Vector<6> row = pulled_back(unit);
-                    hessian += weight * row * row.transpose();
-                }
-                system.add(static_cast<int>(c), weight * pulled_back(F), hessian);
-                continue;
-            }
-            const SymmetricDirichlet term(F);
-            Matrix<6> hessian = Matrix<6>::Zero();
-            for (int m = 0; m < 4; ++m) {
-                const Vector<6> row = pulled_back(term.modes[m]);
-                hessian.noalias() += (weight * term.eigenvalues[m]) * row * row.transpose();
-            }
-            system.add(static_cast<int>(c), weight * pulled_back(term.gradient), hessian);
+            const SymmetricDirichlet term(gradient(state, corners_[c]));
+            add(state, static_cast<int>(c), is_free, term.gradient,
+                {{term.modes.begin(), term.modes.end()},
+                 {term.eigenvalues.begin(), term.eigenvalues.end()}},
+                system);
         }
+    }
+
+    /// The smallest Jacobian determinant of a corner.
+    [[nodiscard]] double min_jacobian(const SurfaceSlide::State& state) const {
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const CellCorner& corner : corners_) {
+            smallest = std::min(smallest, gradient(state, corner).determinant());
+        }
+        return smallest;
+    }
+
+    /// The mean of |F|^2 (1 + 1 / chi^2), chi = (det F + sqrt(det F^2 + width^2)) / 2: finite for
+    /// inverted corners too, near to the symmetric Dirichlet energy for others.
+    ///
+    /// Source: [Escobar03] (the regularised determinant).
+    [[nodiscard]] double regularised_value(const SurfaceSlide::State& state, double width) const {
+        double sum = 0.0;
+        for (const CellCorner& corner : corners_) {
+            const Matrix<2> F = gradient(state, corner);
+            const double chi = regularised(F.determinant(), width).first;
+            sum += F.squaredNorm() * (1.0 + 1.0 / (chi * chi));
+        }
+        return sum / static_cast<double>(corners_.size());
+    }
+
+    /// Its gradient, and the part of its Hessian that is positive for sure.
+    void assemble_regularised(const SurfaceSlide::State& state, double width,
+                              const std::vector<bool>& is_free, NewtonSystem& system) const {
+        system.set_zero();
+        for (std::size_t c = 0; c < corners_.size(); ++c) {
+            const Matrix<2> F = gradient(state, corners_[c]);
+            const auto [chi, slope] = regularised(F.determinant(), width);
+            Matrix<2> cofactor;
+            cofactor << F(1, 1), -F(1, 0), -F(0, 1), F(0, 0);
+            const double inverse_square = 1.0 / (chi * chi);
+            const double squares = F.squaredNorm();
+            Modes modes;
+            for (int m = 0; m < 4; ++m) {
+                modes.matrices.push_back(Matrix<2>::Zero());
+                modes.matrices.back()(m / 2, m % 2) = 1.0;
+                modes.eigenvalues.push_back(2.0 * (1.0 + inverse_square));
+            }
+            modes.matrices.push_back(cofactor);
+            modes.eigenvalues.push_back(6.0 * squares * slope * slope * inverse_square *
+                                        inverse_square);
+            add(state, static_cast<int>(c), is_free,
+                2.0 * (1.0 + inverse_square) * F -
+                    (2.0 * squares * slope * inverse_square / chi) * cofactor,
+                modes, system);
+        }
+    }
+
+    /// Holds the points of cells that are steeper than allowed; whether there were free ones.
+    bool hold_steep(const SurfaceSlide::State& state, const std::vector<double>& least_cosines,
+                    std::vector<bool>& is_free) const {
+        const std::vector<double> cosines = steepness(state);
+        bool is_any = false;
+        for (std::size_t cell = 0; cell < cosines.size(); ++cell) {
+            if (cosines[cell] >= least_cosines[cell]) continue;
+            for (std::size_t k = 4 * cell; k < 4 * cell + 4; ++k) {
+                for (const int point : corners_[k].points) {
+                    is_any = is_any || is_free[point];
+                    is_free[point] = false;
+                }
+            }
+        }
+        return is_any;
+    }
+
+    /// For each cell the smallest cosine of the angles between its normal and the surface's in its
+    /// corners.
+    [[nodiscard]] std::vector<double> steepness(const SurfaceSlide::State& state) const {
+        std::vector<double> cosines;
+        for (std::size_t first = 0; first < corners_.size(); first += 4) {
+            const CellCorner& cell = corners_[first];
+            const MatrixX& normals = state.normals[cell.quad];
+            const Vector3 normal = cell_normal(state, cell);
+            double least = 1.0;
+            for (const int at : {cell.first, cell.first + 1, cell.above, cell.above + 1}) {
+                least = std::min(least, normal.dot(normals.col(at)));
+            }
+            cosines.push_back(least);
+        }
+        return cosines;
     }
 
     /// The points' moves, and the part of them that moves none farther than its cells are long.
@@ -176,16 +235,62 @@ class CellEnergy {
     }
 
   private:
+    /// The sum of eigenvalues times outer squares of matrices.
+    struct Modes {
+        std::vector<Matrix<2>> matrices;
+        std::vector<double> eigenvalues;
+    };
+
+    /// chi and its derivative.
+    [[nodiscard]] static std::pair<double, double> regularised(double det, double width) {
+        const double root = std::sqrt(det * det + width * width);
+        // Without cancellation.
+        const double chi = det > 0.0 ? 0.5 * (det + root) : 0.5 * width * width / (root - det);
+        return {chi, chi / root};
+    }
+
+    /// Adds a corner's gradient and Hessian with respect to F; points that may not move are left
+    /// out.
+    void add(const SurfaceSlide::State& state, int c, const std::vector<bool>& is_free,
+             const Matrix<2>& of_F, const Modes& modes, NewtonSystem& system) const {
+        const CellCorner& corner = corners_[c];
+        const double weight = 1.0 / static_cast<double>(corners_.size());
+        const Matrix<3, 2> plane = tangent_plane(state, corner);
+        const Matrix<3, 2> edges = scaled_edges(corner);
+        Vector<6> free;
+        for (int i = 0; i < 6; ++i) free[i] = is_free[corner.points[i / 2]] ? 1.0 : 0.0;
+        const auto pulled_back = [&](const Matrix<2>& M) {
+            const Matrix<3> of_points = plane * M * edges.transpose();
+            Vector<6> row;
+            for (int i = 0; i < 3; ++i) {
+                row.segment<2>(2 * i) =
+                    state.directions[corner.points[i]].transpose() * of_points.col(i);
+            }
+            return Vector<6>(free.cwiseProduct(row));
+        };
+        Matrix<6> hessian = weight * (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
+        for (std::size_t m = 0; m < modes.matrices.size(); ++m) {
+            const Vector<6> row = pulled_back(modes.matrices[m]);
+            hessian.noalias() += (weight * modes.eigenvalues[m]) * row * row.transpose();
+        }
+        system.add(c, weight * pulled_back(of_F), hessian);
+    }
+
     [[nodiscard]] Matrix<3, 2> scaled_edges(const CellCorner& corner) const {
         return corner.edges * corner.lengths.cwiseInverse().asDiagonal() / cell_size_;
     }
 
+    [[nodiscard]] static Vector3 cell_normal(const SurfaceSlide::State& state,
+                                             const CellCorner& corner) {
+        const MatrixX& normals = state.normals[corner.quad];
+        return (normals.col(corner.first) + normals.col(corner.first + 1) +
+                normals.col(corner.above) + normals.col(corner.above + 1))
+            .normalized();
+    }
+
     [[nodiscard]] static Matrix<3, 2> tangent_plane(const SurfaceSlide::State& state,
                                                     const CellCorner& corner) {
-        const MatrixX& normals = state.normals[corner.quad];
-        const Vector3 normal = (normals.col(corner.first) + normals.col(corner.first + 1) +
-                                normals.col(corner.above) + normals.col(corner.above + 1))
-                                   .normalized();
+        const Vector3 normal = cell_normal(state, corner);
         Matrix<3, 2> plane;
         plane.col(0) = normal.unitOrthogonal();
         plane.col(1) = normal.cross(Vector3(plane.col(0)));
@@ -206,29 +311,110 @@ class CellEnergy {
     double cell_size_ = 1.0;
 };
 
-/// Steps towards short edges until no corner is inverted; false if some are left.
+/// Points that may move, and how steep cells may become: a cell whose corners slide down a finger
+/// of the surface, off its tip, has less energy but leaves the tip out.
+struct Hold {
+    std::vector<bool> is_free;
+    std::vector<double> least_cosines;
+};
+
+Hold make_hold(const CellEnergy& energy, const SurfaceSlide::State& state) {
+    constexpr double least_cosine = 0.7;
+    Hold hold{std::vector<bool>(state.directions.size(), true), energy.steepness(state)};
+    for (double& cosine : hold.least_cosines) cosine = std::min(cosine - 1e-6, least_cosine);
+    return hold;
+}
+
+struct LineSearch {
+    SurfaceSlide::State state;
+    /// Of the longest step.
+    double part = 0.0;
+};
+
+/// The largest part of the moves, halved again and again, at which the value is lower.
+template <typename Value>
+std::optional<LineSearch> search_along(const SurfaceSlide& slide, const SurfaceSlide::State& state,
+                                       const MatrixX& moves, const Value& value) {
+    const double start = value(state);
+    constexpr int max_halvings = 12;
+    double part = 1.0;
+    for (int i = 0; i < max_halvings; ++i, part *= 0.5) {
+        SurfaceSlide::State moved = slide.placed(state.points + part * moves);
+        if (value(moved) < start) return LineSearch{std::move(moved), part};
+    }
+    return std::nullopt;
+}
+
+/// A Newton step along which a value falls. Steps that would make cells too steep are taken again
+/// with these held.
+///
+/// @return the part of the step that was taken; 0 if there is none
+template <typename Assemble, typename Value>
+double step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                 const Assemble& assemble, const Value& value, SurfaceSlide::State& state,
+                 Hold& hold) {
+    while (true) {
+        assemble(state, hold.is_free);
+        const auto [moves, longest] = energy.moves(state, system.step());
+        std::optional<LineSearch> found = search_along(slide, state, longest * moves, value);
+        if (!found) return 0.0;
+        if (energy.hold_steep(found->state, hold.least_cosines, hold.is_free)) continue;
+        state = std::move(found->state);
+        return found->part;
+    }
+}
+
+double newton_step(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+                   SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble(at, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.value(at); }, state, hold);
+}
+
+/// @param width  see CellEnergy::regularised_value
+double regularised_step(const CellEnergy& energy, const SurfaceSlide& slide, double width,
+                        NewtonSystem& system, SurfaceSlide::State& state, Hold& hold) {
+    return step_down(
+        energy, slide, system,
+        [&](const SurfaceSlide::State& at, const std::vector<bool>& is_free) {
+            energy.assemble_regularised(at, width, is_free, system);
+        },
+        [&](const SurfaceSlide::State& at) { return energy.regularised_value(at, width); }, state,
+        hold);
+}
+
+/// Lowers the regularised energy until no corner is inverted; false if some are left.
 bool untangle(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
               SurfaceSlide::State& state) {
-    constexpr int max_steps = 30;
+    constexpr int max_steps = 100;
+    constexpr double least_width = 0.02;
+    if (energy.n_inverted(state) == 0) return true;
+    Hold hold = make_hold(energy, state);
     for (int i = 0; i < max_steps && energy.n_inverted(state) > 0; ++i) {
-        energy.assemble(state, true, system);
-        const auto [moves, part] = energy.moves(state, system.step());
-        state = slide.placed(state.points + part * moves);
+        const double width = std::max(least_width, -energy.min_jacobian(state));
+        if (regularised_step(energy, slide, width, system, state, hold) == 0.0) break;
     }
     return energy.n_inverted(state) == 0;
 }
 
-/// One step with the energy falling; false if there is none.
-bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
-               SurfaceSlide::State& state) {
-    energy.assemble(state, false, system);
-    const auto [moves, part] = energy.moves(state, system.step());
-    const double start = energy.value(state);
-    constexpr int max_halvings = 12;
-    double t = part;
-    for (int i = 0; i < max_halvings; ++i, t *= 0.5) {
-        SurfaceSlide::State moved = slide.placed(state.points + t * moves);
-        if (energy.value(moved) < start) {
+/// Goes down by the regularised energy, which the worst corners don't rule, and from there by the
+/// energy itself; false if that does not end below the start.
+bool escape(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+            SurfaceSlide::State& state, const Hold& hold) {
+    constexpr int max_steps = 5;
+    for (const double width : {0.1, 0.3, 1.0}) {
+        SurfaceSlide::State moved = state;
+        Hold moved_hold = hold;
+        for (int i = 0; i < max_steps; ++i) {
+            regularised_step(energy, slide, width, system, moved, moved_hold);
+        }
+        for (int i = 0; i < max_steps; ++i) {
+            newton_step(energy, slide, system, moved, moved_hold);
+        }
+        if (energy.value(moved) < energy.value(state)) {
             state = std::move(moved);
             return true;
         }
@@ -236,13 +422,24 @@ bool step_down(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem
     return false;
 }
 
+/// One step with the energy falling; false if there is none.
+bool descend(const CellEnergy& energy, const SurfaceSlide& slide, NewtonSystem& system,
+             SurfaceSlide::State& state, Hold& hold) {
+    const double part = newton_step(energy, slide, system, state, hold);
+    // The planes of cells turn as their points move, which the derivatives leave out: beside nearly
+    // inverted corners they may not lead down.
+    constexpr double stuck = 0.05;
+    return (part < stuck && escape(energy, slide, system, state, hold)) || part > 0.0;
+}
+
 void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocationOptions& options,
               NewtonSystem& system, SurfaceSlide::State& state, NodeRelocationReport& report) {
     energy.fit_cell_size(state);
+    Hold hold = make_hold(energy, state);
     report.energies.push_back(energy.value(state));
     for (int i = 0; i < options.max_iterations && !report.is_converged; ++i) {
         const double start = report.energies.back();
-        if (!step_down(energy, slide, system, state)) {
+        if (!descend(energy, slide, system, state, hold)) {
             // As far as the surface's facets allow.
             report.is_converged = true;
             return;

@@ -36,7 +36,9 @@ struct RelocatedSamples {
 /// minimises the mean over all corners of cells of the symmetric Dirichlet energy of the map from
 /// the wanted cell to the surface's tangent plane. Corner nodes stay, feature and boundary arcs'
 /// points slide along their curve, others on their smooth region; each step is put back onto the
-/// surface and taken only if the energy falls, with all corners the right way round.
+/// surface and taken only if the energy falls, with all corners the right way round. Cells that
+/// would bend by more than 45 degrees from their middle to a corner, and more than at the start,
+/// are held instead: their points would slip off a finger of the surface.
 ///
 /// Source: [Maquart19] 4.2.2.2 and C.2 for its purpose. Differs: there one node at a time moves in
 /// the polar map of its triangles along the gradient of the energy, the surface being triangulated

@@ -1,5 +1,7 @@
 #include "meshing/pipeline/volume_distance.h"
 
+#include <algorithm>
+
 #include "iga/core/error.h"
 #include "meshing/surface/surface_distance.h"
 
@@ -64,6 +66,16 @@ void add_edge(const iga::Volume& patch, int from, int to, int n_samples,
     }
 }
 
+// The largest length of each of n groups, over the diagonal.
+std::vector<double> largest_of(const std::vector<double>& lengths, const std::vector<int>& groups,
+                               int n, double diagonal) {
+    std::vector<double> largest(n, 0.0);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        largest[groups[i]] = std::max(largest[groups[i]], lengths[i] / diagonal);
+    }
+    return largest;
+}
+
 }  // namespace
 
 VolumeDistance volume_distance(const iga::MultiPatch<3>& volume, const CuboidDecomposition& cuboids,
@@ -71,21 +83,27 @@ VolumeDistance volume_distance(const iga::MultiPatch<3>& volume, const CuboidDec
     if (n_samples < 1) throw InputError("volume_distance: {} samples per element", n_samples);
     std::vector<SpaceTriangle> triangles;
     std::vector<SpaceTriangle> segments;
+    std::vector<int> quads;
+    std::vector<int> arcs;
     const QuadLayout& layout = cuboids.surface.layout;
     for (int q = 0; q < layout.n_quads(); ++q) {
         const CuboidSide& side = cuboids.sides[q];
         const iga::Volume& patch = volume.patches[side.cuboid];
         add_side(patch, side.side, n_samples, triangles);
+        quads.resize(triangles.size(), q);
         const auto& corners = side_corners(side.side);
         for (int k = 0; k < 4; ++k) {
             const QuadLayout::Side& arc = layout.sides(q)[k];
             if (!arc.is_forward || !cuboids.surface.is_feature_arc[arc.arc]) continue;
             add_edge(patch, corners[k], corners[(k + 1) % 4], n_samples, segments);
+            arcs.resize(segments.size(), arc.arc);
         }
     }
     const double diagonal = bounding_box_diagonal(cuboids.mesh);
     VolumeDistance distance;
-    distance.surface = hausdorff_distance(triangles, triangles_of(cuboids.mesh)) / diagonal;
+    distance.of_quads = largest_of(triangle_distances(triangles, triangles_of(cuboids.mesh)), quads,
+                                   layout.n_quads(), diagonal);
+    distance.surface = std::ranges::max(distance.of_quads);
     std::vector<SpaceTriangle> features;
     for (int a = 0; a < layout.n_arcs(); ++a) {
         if (!cuboids.surface.is_feature_arc[a]) continue;
@@ -95,8 +113,11 @@ VolumeDistance volume_distance(const iga::MultiPatch<3>& volume, const CuboidDec
             features.push_back({cuboids.mesh.point(path[k]), end, end});
         }
     }
+    distance.of_arcs.assign(layout.n_arcs(), 0.0);
     if (!features.empty()) {
-        distance.features = hausdorff_distance(segments, features) / diagonal;
+        distance.of_arcs =
+            largest_of(triangle_distances(segments, features), arcs, layout.n_arcs(), diagonal);
+        distance.features = std::ranges::max(distance.of_arcs);
     }
     return distance;
 }

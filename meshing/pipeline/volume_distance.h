@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "iga/topology/multipatch.h"
 #include "meshing/layout/cuboid_decomposition.h"
 
@@ -11,6 +13,10 @@ struct VolumeDistance {
     double surface = 0.0;
     /// Between edges of patches along sharp edges and these; 0 if there are none.
     double features = 0.0;
+    /// The largest of each quad of the layout, and of each of its arcs along sharp edges; 0 for
+    /// other arcs.
+    std::vector<double> of_quads;
+    std::vector<double> of_arcs;
 };
 
 /// Outer sides are sampled at `n_samples` equal parts of each element and direction.

@@ -157,49 +157,74 @@ PrincipalCurvatures to_principal(const Matrix<3>& tensor, const Vector3& normal)
     return result;
 }
 
+// Sums over a part of a disc.
+struct DiscPart {
+    Matrix<3> tensor = Matrix<3>::Zero();
+    Vector3 normal = Vector3::Zero();
+    double area = 0.0;
+};
+
 // Faces and edges that hang together with a vertex inside a ball.
 class Disc {
   public:
-    explicit Disc(const SurfaceMesh& mesh)
-        : mesh_(mesh), face_mark_(mesh.n_faces(), -1), edge_mark_(mesh.n_edges(), -1) {}
+    Disc(const SurfaceMesh& mesh, bool crosses_features)
+        : mesh_(mesh),
+          crosses_features_(crosses_features),
+          face_mark_(mesh.n_faces(), -1),
+          edge_mark_(mesh.n_edges(), -1) {}
 
+    // Of the part between features with the largest area.
     PrincipalCurvatures average(const DiscData& data, VertexHandle vertex, double radius) {
+        DiscPart largest;
+        for (const auto face : mesh_.vf_range(vertex)) {
+            if (face_mark_[face.idx()] == vertex.idx()) continue;
+            const DiscPart part = gather(data, face, vertex, radius);
+            // Parts of equal size: the one found first, whatever rounding says.
+            constexpr double equal = 1e-9;
+            if (part.area > (1.0 + equal) * largest.area) largest = part;
+        }
+        if (!(largest.area > 0.0) || !(largest.normal.norm() > 0.0)) return {};
+        return to_principal(largest.tensor / largest.area, largest.normal.normalized());
+    }
+
+  private:
+    DiscPart gather(const DiscData& data, FaceHandle start, VertexHandle vertex, double radius) {
         const Vector3& center = mesh_.point(vertex);
         const int mark = vertex.idx();
+        DiscPart sum;
         stack_.clear();
-        for (const auto face : mesh_.vf_range(vertex)) push(face, mark);
-        Matrix<3> tensor = Matrix<3>::Zero();
-        Vector3 normal = Vector3::Zero();
-        double area = 0.0;
+        push(start, mark);
         while (!stack_.empty()) {
             const FaceHandle face = stack_.back();
             stack_.pop_back();
             const auto [a, b, c] = face_vertices(mesh_, face);
             const Vector3& face_normal = data.face_normals[face.idx()];
-            const double part = area_in_ball({mesh_.point(a), mesh_.point(b), mesh_.point(c)},
+            const double area = area_in_ball({mesh_.point(a), mesh_.point(b), mesh_.point(c)},
                                              face_normal, center, radius);
-            area += part;
-            normal += part * face_normal;
+            sum.area += area;
+            sum.normal += area * face_normal;
             HalfedgeHandle halfedge = mesh_.halfedge_handle(face);
             for (int i = 0; i < 3; ++i, halfedge = mesh_.next_halfedge_handle(halfedge)) {
                 const EdgeHandle edge = mesh_.edge_handle(halfedge);
-                if (edge_mark_[edge.idx()] == mark) continue;
+                if (edge_mark_[edge.idx()] == mark || is_end(edge)) continue;
                 edge_mark_[edge.idx()] = mark;
                 const Vector3& from = mesh_.point(mesh_.from_vertex_handle(halfedge));
                 const Vector3& to = mesh_.point(mesh_.to_vertex_handle(halfedge));
                 const double length = length_in_ball(from, to, center, radius);
                 if (length == 0.0) continue;
                 const Vector3 along = (to - from).normalized();
-                tensor += data.edge_angles[edge.idx()] * length * along * along.transpose();
+                sum.tensor += data.edge_angles[edge.idx()] * length * along * along.transpose();
                 const FaceHandle neighbour = mesh_.opposite_face_handle(halfedge);
                 if (neighbour.is_valid()) push(neighbour, mark);
             }
         }
-        if (!(area > 0.0) || !(normal.norm() > 0.0)) return {};
-        return to_principal(tensor / area, normal.normalized());
+        return sum;
     }
 
-  private:
+    [[nodiscard]] bool is_end(EdgeHandle edge) const {
+        return !crosses_features_ && mesh_.data(edge).feature >= 0;
+    }
+
     void push(FaceHandle face, int mark) {
         if (face_mark_[face.idx()] == mark) return;
         face_mark_[face.idx()] = mark;
@@ -207,6 +232,7 @@ class Disc {
     }
 
     const SurfaceMesh& mesh_;
+    bool crosses_features_;
     std::vector<int> face_mark_;
     std::vector<int> edge_mark_;
     std::vector<FaceHandle> stack_;
@@ -241,7 +267,7 @@ std::vector<PrincipalCurvatures> principal_curvatures(const SurfaceMesh& mesh,
     // Blocks of vertices, each with marks of its own.
     const int n_blocks = std::clamp(n_vertices / 2048, 1, 8);
     parallel_for(n_blocks, [&](int i_block) {
-        Disc disc(mesh);
+        Disc disc(mesh, options.crosses_features);
         const auto bound = [&](int i) {
             return static_cast<int>(static_cast<long long>(n_vertices) * i / n_blocks);
         };

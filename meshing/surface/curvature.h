@@ -44,8 +44,11 @@ struct PrincipalCurvatures {
 struct CurvatureOptions {
     /// Radius of the disc around each vertex, a length; without it `edges_per_radius` times the
     /// mean length of the edges at the vertex.
-    std::optional<double> radius;
+    std::optional<double> radius = {};
     double edges_per_radius = 3.0;
+    /// Whether edges tagged as features (detect_features) bend like all others; else the disc of a
+    /// vertex ends at them.
+    bool crosses_features = false;
 };
 
 /// Principal curvatures of each vertex: those of the curvature tensor averaged over a disc B,
@@ -53,8 +56,9 @@ struct CurvatureOptions {
 ///     T = 1 / area(B) sum over edges e of beta(e) length(e in B) e e^T,
 ///
 /// with beta the signed angle between the normals of the two faces, positive on convex edges. B is
-/// the part of the surface inside a ball around the vertex that hangs together with it. Across
-/// sharp edges it averages as well. Zero at vertices without triangles.
+/// the part of the surface inside a ball around the vertex that hangs together with it. If
+/// features are not crossed, a vertex on one has the curvatures of the smooth side that has most of
+/// the disc. Zero at vertices without triangles.
 ///
 /// Converges to the smooth curvatures when radius and edge length / radius both go to zero.
 /// Cost: proportional to the number of triangles in all discs.

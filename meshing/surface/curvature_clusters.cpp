@@ -17,7 +17,7 @@ std::vector<int> signs_of_curvature(const SurfaceMesh& mesh) {
     constexpr double flat = 4.0;
     const double diagonal = bounding_box_diagonal(mesh);
     std::vector<int> signs;
-    for (const PrincipalCurvatures& k : principal_curvatures(mesh)) {
+    for (const PrincipalCurvatures& k : principal_curvatures(mesh, {.crosses_features = true})) {
         const double scaled = k.gaussian() * diagonal * diagonal;
         signs.push_back(scaled > flat ? 1 : (scaled < -flat ? -1 : 0));
     }

@@ -9,15 +9,9 @@ namespace couture::meshing {
 
 namespace {
 
-double one_sided_distance(std::span<const SpaceTriangle> from, const TriangleTree& to) {
-    double largest = 0.0;
-    for (const SpaceTriangle& triangle : from) {
-        const Vector3 centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-        for (const Vector3& point : {triangle[0], triangle[1], triangle[2], centre}) {
-            largest = std::max(largest, to.nearest(point).squared_distance);
-        }
-    }
-    return std::sqrt(largest);
+std::array<Vector3, 4> probes_of(const SpaceTriangle& triangle) {
+    const Vector3 centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+    return {triangle[0], triangle[1], triangle[2], centre};
 }
 
 }  // namespace
@@ -32,11 +26,30 @@ std::vector<SpaceTriangle> triangles_of(const SurfaceMesh& mesh) {
     return triangles;
 }
 
-double hausdorff_distance(std::span<const SpaceTriangle> first,
-                          std::span<const SpaceTriangle> second) {
+std::vector<double> triangle_distances(std::span<const SpaceTriangle> first,
+                                       std::span<const SpaceTriangle> second) {
     const TriangleTree of_first({first.begin(), first.end()});
     const TriangleTree of_second({second.begin(), second.end()});
-    return std::max(one_sided_distance(first, of_second), one_sided_distance(second, of_first));
+    std::vector<double> squares(first.size(), 0.0);
+    for (std::size_t t = 0; t < first.size(); ++t) {
+        for (const Vector3& point : probes_of(first[t])) {
+            squares[t] = std::max(squares[t], of_second.nearest(point).squared_distance);
+        }
+    }
+    for (const SpaceTriangle& triangle : second) {
+        for (const Vector3& point : probes_of(triangle)) {
+            const NearestPlace place = of_first.nearest(point);
+            double& square = squares[place.triangle];
+            square = std::max(square, place.squared_distance);
+        }
+    }
+    for (double& square : squares) square = std::sqrt(square);
+    return squares;
+}
+
+double hausdorff_distance(std::span<const SpaceTriangle> first,
+                          std::span<const SpaceTriangle> second) {
+    return std::ranges::max(triangle_distances(first, second));
 }
 
 }  // namespace couture::meshing

@@ -11,11 +11,12 @@
 
 #include "iga/core/error.h"
 #include "meshing/topology/cycle_bounds.h"
-#include "meshing/topology/handle_tunnel_loops.h"
+#include "meshing/topology/handle_cuts.h"
 #include "meshing/topology/homotopic_cycle.h"
 #include "meshing/topology/invariants.h"
 #include "meshing/topology/least_cost.h"
 #include "meshing/topology/n_pants.h"
+#include "meshing/topology/pants_curves.h"
 #include "meshing/topology/tight_loop.h"
 
 namespace couture::meshing {
@@ -32,13 +33,15 @@ class Decomposer {
           options_(options),
           planes_(planes()),
           cycle_criterion_(mesh, options.cycle, planes_, "criterion of the cycle"),
-          merge_criterion_(mesh, options.merge, planes_, "criterion of the merge") {}
+          merge_criterion_(mesh, options.merge, planes_, "criterion of the merge"),
+          curves_(mesh) {}
 
     PantsDecomposition run() {
         add_given_loops();
-        for (std::size_t s = 0; s < shells_.size(); ++s) cut_handles(static_cast<int>(s));
+        for (std::size_t s = 0; s < shells_.size(); ++s) cut_handles_of(static_cast<int>(s));
         if (options_.only_handles) {
             result_.patch_of_face = regions_between_curves(mesh_);
+            result_.curves = curves_.all();
             return std::move(result_);
         }
         for (const SurfaceInvariants& shell : shells_) {
@@ -46,7 +49,10 @@ class Decomposer {
         }
         for (const auto& points : options_.cycles_through) cut_through(points);
         cut_into_pants();
-        finish();
+        result_.patch_of_face = regions_between_curves(mesh_);
+        result_.patches =
+            patches_between_curves(mesh_, curves_, shells_, options_.only_given_loops);
+        result_.curves = curves_.all();
         if (options_.most_boundaries > 3 && n_pants_ > 1) {
             report("putting pants together", 0.0);
             merge_pants(mesh_, result_, options_.most_boundaries, options_.merge_ratio);
@@ -77,21 +83,36 @@ class Decomposer {
         const auto loops = boundary_loops(mesh_);
         for (const int b : boundary_order(loops.size())) {
             const BoundaryLoop& loop = loops[b];
-            add_curve({.kind = PantsCurveKind::boundary,
-                       .curve = {loop.vertices, true},
-                       .length = loop.length,
-                       .name = b < static_cast<int>(options_.boundary_names.size())
-                                   ? options_.boundary_names[b]
-                                   : std::string()});
+            curves_.add({.kind = PantsCurveKind::boundary,
+                         .curve = {loop.vertices, true},
+                         .length = loop.length,
+                         .name = b < static_cast<int>(options_.boundary_names.size())
+                                     ? options_.boundary_names[b]
+                                     : std::string()});
         }
         check_options();
         split_chords_between_curves(mesh_);
-        n_boundaries_ = result_.curves.size();
+        n_boundaries_ = curves_.size();
         for (std::size_t i = 0; i < options_.loops.size(); ++i) add_loop(i);
     }
 
     static InputError no_points() {
         return InputError("pants: a cycle through no points; give at least one");
+    }
+
+    void cut_handles_of(int shell) {
+        if (shells_[shell].genus == 0) return;
+        report("looking for handle and tunnel loops", 0.0);
+        const bool has_pants = is_cut_into_pants(shells_[shell]);
+        HandleCutOptions options{.first_given = n_boundaries_,
+                                 .only_given = options_.only_given_loops && has_pants,
+                                 .cuts = has_pants || options_.cuts_tori};
+        if (!cycle_criterion_.is_plain_length()) {
+            options.tightened = [&](const SurfaceCurve& curve) { return tightened(curve); };
+        }
+        for (auto& tunnel : cut_handles(mesh_, shell, curves_, options)) {
+            result_.tunnels.push_back(std::move(tunnel));
+        }
     }
 
     // A cycle around two loops that are left.
@@ -105,19 +126,6 @@ class Decomposer {
     };
     using Pair = std::array<CurveSide, 2>;
 
-    static bool is_cut_into_pants(const SurfaceInvariants& shell) {
-        return shell.euler_characteristic < 0;
-    }
-
-    [[nodiscard]] std::vector<FaceHandle> faces_of_shell(int shell) const {
-        std::vector<FaceHandle> faces;
-        const std::vector<int> component = face_components(mesh_);
-        for (const auto face : mesh_.faces()) {
-            if (component[face.idx()] == shell) faces.push_back(face);
-        }
-        return faces;
-    }
-
     [[nodiscard]] std::vector<SymmetryPlane> planes() const {
         const bool wanted = options_.cycle.symmetry > 0.0 || options_.merge.symmetry > 0.0;
         return wanted ? find_symmetry_planes(mesh_) : std::vector<SymmetryPlane>{};
@@ -125,21 +133,6 @@ class Decomposer {
 
     void report(std::string_view what, double fraction) const {
         if (options_.progress) options_.progress(what, fraction);
-    }
-
-    int add_curve(PantsCurve curve) {
-        const int number = static_cast<int>(result_.curves.size());
-        if (curve.kind != PantsCurveKind::boundary) {
-            mark_curve(mesh_, curve.curve, number);
-            curve.length = curve_length(mesh_, curve.curve);
-        }
-        // Both sides are known by the halfedges along them.
-        for (const HalfedgeHandle h : curve_halfedges(mesh_, curve.curve)) {
-            side_of_[h.idx()] = {number, true};
-            side_of_[mesh_.opposite_halfedge_handle(h).idx()] = {number, false};
-        }
-        result_.curves.push_back(std::move(curve));
-        return number;
     }
 
     void check_options() const {
@@ -199,98 +192,12 @@ class Decomposer {
         try {
             curve = trace_loop(mesh_, loop, width);
         } catch (const InputError& error) {
-            throw InputError("pants: curve {}: {}", result_.curves.size(), error.what());
+            throw InputError("pants: curve {}: {}", curves_.size(), error.what());
         } catch (const TopologyError& error) {
-            throw TopologyError("pants: curve {}: {}", result_.curves.size(), error.what());
+            throw TopologyError("pants: curve {}: {}", curves_.size(), error.what());
         }
-        add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve)});
+        curves_.add({.kind = PantsCurveKind::cycle, .curve = std::move(curve)});
         split_chords_between_curves(mesh_);
-    }
-
-    // Puts the vertices into a curve by which its edges were split on a copy of the surface.
-    void refine_curve(int number, const std::vector<int>& vertices, const CutSurface& copy,
-                      const std::vector<VertexHandle>& handles) {
-        SurfaceCurve& curve = result_.curves[number].curve;
-        curve.vertices.clear();
-        for (const int v : copy.with_splits(vertices)) curve.vertices.push_back(handles[v]);
-        for (const HalfedgeHandle h : curve_halfedges(mesh_, curve)) {
-            side_of_[h.idx()] = {number, true};
-            side_of_[mesh_.opposite_halfedge_handle(h).idx()] = {number, false};
-        }
-    }
-
-    // Handles of a shell that keep off the curves there are, which get their kinds.
-    void cut_handles(int shell) {
-        if (shells_[shell].genus == 0) return;
-        const bool has_pants = is_cut_into_pants(shells_[shell]);
-        report("looking for handle and tunnel loops", 0.0);
-        const CutSurface whole(mesh_, faces_of_shell(shell),
-                               std::vector<bool>(mesh_.n_edges(), false));
-        std::vector<int> number(mesh_.n_vertices(), -1);
-        for (int v = 0; v < whole.n_vertices(); ++v) number[whole.parent(v)] = v;
-        std::vector<std::vector<int>> cuts;
-        std::vector<int> curve_of_cut;
-        for (std::size_t c = n_boundaries_; c < n_boundaries_ + options_.loops.size(); ++c) {
-            const auto& vertices = result_.curves[c].curve.vertices;
-            if (number[vertices.front().idx()] < 0) continue;
-            curve_of_cut.push_back(static_cast<int>(c));
-            auto& cut = cuts.emplace_back();
-            for (const VertexHandle v : vertices) cut.push_back(number[v.idx()]);
-        }
-        const HandleTunnelLoops loops =
-            find_handle_tunnel_loops(whole, cuts, options_.only_given_loops && has_pants);
-        for (std::size_t c = 0; c < cuts.size(); ++c) {
-            if (loops.is_handle_cut[c]) {
-                result_.curves[curve_of_cut[c]].kind = PantsCurveKind::handle;
-            }
-        }
-        const auto handles = embed_splits(mesh_, loops.surface);
-        for (std::size_t c = 0; c < cuts.size(); ++c) {
-            refine_curve(curve_of_cut[c], cuts[c], loops.surface, handles);
-        }
-        for (const HomologyLoop& loop : loops.tunnels) {
-            auto& points = result_.tunnels.emplace_back();
-            for (const int v : loop.vertices) points.push_back(loops.surface.point(v));
-        }
-        if (!has_pants && !options_.cuts_tori) return;
-        std::vector<SurfaceCurve> curves;
-        for (const HomologyLoop& loop : loops.handles) {
-            SurfaceCurve& curve = curves.emplace_back();
-            for (const int v : loop.vertices) curve.vertices.push_back(handles[v]);
-        }
-        if (!cycle_criterion_.is_plain_length()) tighten_handles(curves);
-        for (SurfaceCurve& curve : curves) {
-            add_curve({.kind = PantsCurveKind::handle, .curve = std::move(curve)});
-        }
-        split_chords_between_curves(mesh_);
-    }
-
-    // Handles are shortest by plain length; each is pulled tight by the criterion of cycles between
-    // all others.
-    void tighten_handles(std::vector<SurfaceCurve>& curves) {
-        const auto mark = [&](const SurfaceCurve& curve, int number) {
-            for (const HalfedgeHandle h : curve_halfedges(mesh_, curve)) {
-                mesh_.data(mesh_.edge_handle(h)).curve = number;
-            }
-        };
-        const auto first = static_cast<int>(result_.curves.size());
-        for (std::size_t c = 0; c < curves.size(); ++c) {
-            mark(curves[c], first + static_cast<int>(c));
-        }
-        for (SurfaceCurve& curve : curves) {
-            mark(curve, -1);
-            curve = tightened(curve);
-            mark(curve, first);
-        }
-        for (const SurfaceCurve& curve : curves) mark(curve, -1);
-    }
-
-    [[nodiscard]] CurveSide side_of(const CutSurface& piece, const std::vector<int>& loop) const {
-        const int h = loop.front();
-        const HalfedgeHandle halfedge =
-            mesh_.find_halfedge(VertexHandle(piece.parent(piece.origin(h))),
-                                VertexHandle(piece.parent(piece.target(h))));
-        return side_of_.at(halfedge.idx());
     }
 
     [[nodiscard]] std::vector<double> factors(const CutSurface& piece) const {
@@ -327,31 +234,6 @@ class Decomposer {
         return merge_criterion_.score(factors, points);
     }
 
-    using Sides = std::vector<std::pair<CurveSide, int>>;
-
-    // Boundary loops of a piece by the sides of curves that they are, in order, with their numbers.
-    [[nodiscard]] Sides sides_of(const CutSurface& piece,
-                                 const std::vector<std::vector<int>>& loops) const {
-        Sides sides;
-        for (std::size_t i = 0; i < loops.size(); ++i) {
-            sides.emplace_back(side_of(piece, loops[i]), static_cast<int>(i));
-        }
-        std::sort(sides.begin(), sides.end());
-        return sides;
-    }
-
-    // What lies between the curves, by the smallest face.
-    [[nodiscard]] std::vector<std::vector<FaceHandle>> pieces() const {
-        std::vector<std::vector<FaceHandle>> faces;
-        const std::vector<int> region = regions_between_curves(mesh_);
-        for (const auto face : mesh_.faces()) {
-            const auto r = static_cast<std::size_t>(region[face.idx()]);
-            if (r >= faces.size()) faces.resize(r + 1);
-            faces[r].push_back(face);
-        }
-        return faces;
-    }
-
     // Whether a piece is a sphere, disc, cylinder or torus by itself, that nothing cuts but the
     // handle of a torus.
     [[nodiscard]] bool is_whole_shell(const CutSurface& piece) const {
@@ -359,16 +241,17 @@ class Decomposer {
         const auto loops = piece.boundary_loops();
         std::set<int> cuts;
         for (const auto& loop : loops) {
-            const int curve = side_of(piece, loop).curve;
-            if (result_.curves[curve].kind != PantsCurveKind::boundary) cuts.insert(curve);
+            const int curve = curves_.side_of(piece, loop).curve;
+            if (curves_[curve].kind != PantsCurveKind::boundary) cuts.insert(curve);
         }
-        const bool is_cut_torus = loops.size() == 2 && cuts.size() == 1 &&
-                                  side_of(piece, loops[0]).curve == side_of(piece, loops[1]).curve;
+        const bool is_cut_torus =
+            loops.size() == 2 && cuts.size() == 1 &&
+            curves_.side_of(piece, loops[0]).curve == curves_.side_of(piece, loops[1]).curve;
         return cuts.empty() || is_cut_torus;
     }
 
     void cut_into_pants() {
-        for (auto& faces : pieces()) {
+        for (auto& faces : faces_between_curves(mesh_)) {
             rest_ = std::move(faces);
             const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
             const auto loops = piece.boundary_loops();
@@ -376,7 +259,7 @@ class Decomposer {
             if (is_whole_shell(piece)) continue;
             if (piece.euler_characteristic() >= 0) {
                 std::string names;
-                for (const auto& [side, loop] : sides_of(piece, loops)) {
+                for (const auto& [side, loop] : curves_.sides_of(piece, loops)) {
                     names += fmt::format("{}{}", names.empty() ? "" : ", ", side.curve);
                 }
                 throw TopologyError(
@@ -394,7 +277,7 @@ class Decomposer {
 
     // Candidates of before the last cut that are left, and those around its loop.
     void update_candidates(const CutSurface& piece, const std::vector<std::vector<int>>& loops,
-                           const Sides& sides) {
+                           const PantsCurves::Sides& sides) {
         const CycleBounds bounds(piece, loops);
         std::map<Pair, Candidate> left;
         for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -415,7 +298,7 @@ class Decomposer {
     void cut_off_pant() {
         const CutSurface piece(mesh_, rest_, curve_seams(mesh_));
         const HomotopicCycles cycles(piece, factors(piece));
-        const Sides sides = sides_of(piece, cycles.loops());
+        const PantsCurves::Sides sides = curves_.sides_of(piece, cycles.loops());
         const std::map<CurveSide, int> loop_of(sides.begin(), sides.end());
         update_candidates(piece, cycles.loops(), sides);
         std::vector<Pair> pairs;
@@ -459,8 +342,8 @@ class Decomposer {
     }
 
     int add_cycle(SurfaceCurve curve, const Pair& around) {
-        const int number =
-            add_curve({.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
+        const int number = curves_.add(
+            {.kind = PantsCurveKind::cycle, .curve = std::move(curve), .around = around});
         split_chords_between_curves(mesh_);
         return number;
     }
@@ -502,7 +385,7 @@ class Decomposer {
         for (const Vector3& point : points) wanted.insert(nearest_free(point).idx());
         std::optional<HomotopicCycle> best;
         Pair around{};
-        for (const auto& faces : pieces()) {
+        for (const auto& faces : faces_between_curves(mesh_)) {
             const CutSurface piece(mesh_, faces, curve_seams(mesh_));
             std::vector<int> inside;
             for (int v = 0; v < piece.n_vertices(); ++v) {
@@ -518,7 +401,7 @@ class Decomposer {
                                      : "a curve divides them from each other");
             }
             const HomotopicCycles cycles(piece, factors(piece), inside);
-            const Sides sides = sides_of(piece, cycles.loops());
+            const PantsCurves::Sides sides = curves_.sides_of(piece, cycles.loops());
             for (std::size_t i = 0; i < sides.size(); ++i) {
                 for (std::size_t j = i + 1; j < sides.size(); ++j) {
                     HomotopicCycle cycle = cycles.find(sides[i].second, sides[j].second);
@@ -548,7 +431,7 @@ class Decomposer {
     // The pant lies left of the new cycle; what is left of the surface, right of it.
     void remove_pant(int number) {
         const std::vector<int> region = regions_between_curves(mesh_);
-        const HalfedgeHandle h = curve_halfedges(mesh_, result_.curves[number].curve).front();
+        const HalfedgeHandle h = curve_halfedges(mesh_, curves_[number].curve).front();
         const int pant = region[mesh_.face_handle(h).idx()];
         const int rest = region[mesh_.face_handle(mesh_.opposite_halfedge_handle(h)).idx()];
         if (pant == rest) {
@@ -569,66 +452,16 @@ class Decomposer {
         }
     }
 
-    void finish() {
-        result_.patch_of_face = regions_between_curves(mesh_);
-        const std::vector<int> shell_of_face = face_components(mesh_);
-        const auto faces_of = pieces();
-        const int n_patches = static_cast<int>(faces_of.size());
-        for (int p = 0; p < n_patches; ++p) {
-            const CutSurface piece(mesh_, faces_of[p], curve_seams(mesh_));
-            PantsPatch patch;
-            patch.shell = shell_of_face[faces_of[p].front().idx()];
-            for (const auto& loop : piece.boundary_loops()) {
-                patch.boundary.push_back(side_of(piece, loop));
-            }
-            std::sort(patch.boundary.begin(), patch.boundary.end());
-            patch.genus =
-                (2 - piece.euler_characteristic() - static_cast<int>(patch.boundary.size())) / 2;
-            const bool is_n_pant = options_.only_given_loops && patch.genus == 0;
-            if (is_cut_into_pants(shells_[patch.shell]) && !is_n_pant &&
-                patch.euler_characteristic() != -1) {
-                throw TopologyError(
-                    "pants: patch {} has genus {} and {} boundary loops; it must have genus 0 and "
-                    "3",
-                    p, patch.genus, patch.boundary.size());
-            }
-            result_.patches.push_back(std::move(patch));
-        }
-        if (!options_.only_given_loops) check_counts();
-    }
-
-    void check_counts() const {
-        std::vector<PantsCount> found(shells_.size());
-        std::vector<std::set<int>> curves(shells_.size());
-        for (const PantsPatch& patch : result_.patches) {
-            ++found[patch.shell].n_pants;
-            for (const CurveSide& side : patch.boundary) {
-                if (result_.curves[side.curve].kind == PantsCurveKind::boundary) continue;
-                curves[patch.shell].insert(side.curve);
-            }
-        }
-        for (std::size_t s = 0; s < shells_.size(); ++s) {
-            if (!is_cut_into_pants(shells_[s])) continue;
-            const PantsCount count = count_pants(shells_[s].genus, shells_[s].n_boundaries);
-            const int n_curves = static_cast<int>(curves[s].size());
-            if (found[s].n_pants != count.n_pants || n_curves != count.n_curves) {
-                throw TopologyError(
-                    "pants: shell {}: {} pants and {} curves; there must be {} and {}", s,
-                    found[s].n_pants, n_curves, count.n_pants, count.n_curves);
-            }
-        }
-    }
-
     SurfaceMesh& mesh_;
     const PantsOptions& options_;
     std::vector<SymmetryPlane> planes_;
     CutCriterion cycle_criterion_;
     CutCriterion merge_criterion_;
     PantsDecomposition result_;
+    PantsCurves curves_;
     // Connected components, see face_components.
     std::vector<SurfaceInvariants> shells_;
-    std::size_t n_boundaries_ = 0;
-    std::map<int, CurveSide> side_of_;
+    int n_boundaries_ = 0;
     std::vector<FaceHandle> rest_;
     int n_pants_ = 0;
     int n_cut_off_ = 0;

@@ -201,7 +201,7 @@ CutCriterion::CutCriterion(const SurfaceMesh& mesh, const CriterionWeights& weig
         }
     }
     if (weights.curvature > 0.0) {
-        const auto curvatures = principal_curvatures(mesh);
+        const auto curvatures = principal_curvatures(mesh, {.crosses_features = true});
         for (const auto vertex : mesh.vertices()) {
             // A valley of radius a tenth of the diagonal counts 1/4, such a ridge 3/4.
             const double scaled = 0.1 * diagonal_ * curvatures[vertex.idx()].minimum;

@@ -108,8 +108,13 @@ MatrixX place_inner_nodes(const VolumetricLayout& layout, const LayoutCells& cel
         straight.nodes = start;
         const auto [volume, report] =
             parameterize_volume(make_multipatch(layout, cells, straight), options);
+        // Cuboids that are bent by more than half a turn can't be straight: then what is unfolded
+        // in vain is worse than the start.
+        const bool is_unfolded = report.min_scaled_jacobian_after > 0.0;
+        if (!is_unfolded && best_jacobian <= 0.0) best = start;
         if (report.min_scaled_jacobian_after <= best_jacobian) continue;
         best_jacobian = report.min_scaled_jacobian_after;
+        if (!is_unfolded) continue;
         for (int c = 0; c < layout.n_cuboids(); ++c) {
             for (int i = 0; i < 8; ++i) {
                 best.row(layout.cuboids[c][i]) = volume.patches[c].control_points().row(i);

@@ -11,7 +11,8 @@ namespace couture::meshing {
 /// once behind the boundary along its normals where an edge leads there (rings pull the first
 /// towards their middle) with the Laplacian for the rest; both are unfolded and improved as
 /// straight cuboids (see parameterize_volume), and the one with the larger smallest scaled Jacobian
-/// is taken.
+/// is taken. If both stay folded, the second is taken as it started: cuboids that are bent by more
+/// than half a turn can't be straight.
 ///
 /// @param nodes  n_nodes x 3
 /// @param is_given  for each node whether it lies on the boundary and stays

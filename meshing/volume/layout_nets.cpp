@@ -14,6 +14,26 @@ iga::KnotVector cuboid_knots(const VolumetricLayout& layout, const LayoutCells& 
     return is_forward ? knots[edge] : knots[edge].reversed();
 }
 
+MatrixX straight_edge(const LayoutCells& cells, const LayoutNets& nets, int edge) {
+    return straight_net(nets.knots[edge], nets.nodes.row(cells.edges[edge].from),
+                        nets.nodes.row(cells.edges[edge].to));
+}
+
+// For each edge those that face it in a face of the layout, with whether they run against it.
+std::vector<std::vector<std::pair<int, bool>>> facing_edges(const LayoutCells& cells) {
+    std::vector<std::vector<std::pair<int, bool>>> facing(cells.edges.size());
+    for (const auto& face : cells.faces) {
+        for (const int k : {0, 2}) {
+            const int a = face.edges[k];
+            const int b = face.edges[k + 1];
+            const bool is_reversed = cells.runs_against_sheet[a] != cells.runs_against_sheet[b];
+            facing[a].emplace_back(b, is_reversed);
+            facing[b].emplace_back(a, is_reversed);
+        }
+    }
+    return facing;
+}
+
 iga::Volume make_patch(const VolumetricLayout& layout, const LayoutCells& cells,
                        const LayoutNets& nets, int cuboid) {
     const iga::TensorSpace<3> space{{cuboid_knots(layout, cells, nets.knots, cuboid, 0),
@@ -64,15 +84,40 @@ MatrixX with_border(const LayoutCells& cells, const LayoutNets& nets, int face, 
     return net;
 }
 
+void bend_edges(const LayoutCells& cells, LayoutNets& nets) {
+    // More change nothing that a start would need.
+    constexpr int n_rounds = 50;
+    const auto n_edges = static_cast<int>(cells.edges.size());
+    nets.edges.resize(n_edges);
+    std::vector<bool> is_given(n_edges);
+    std::vector<MatrixX> bends(n_edges);
+    for (int e = 0; e < n_edges; ++e) {
+        const MatrixX straight = straight_edge(cells, nets, e);
+        is_given[e] = nets.edges[e].rows() > 0;
+        bends[e] = is_given[e] ? nets.edges[e] - straight : MatrixX(0.0 * straight);
+    }
+    const auto facing = facing_edges(cells);
+    for (int round = 0; round < n_rounds; ++round) {
+        for (int e = 0; e < n_edges; ++e) {
+            if (is_given[e]) continue;
+            MatrixX sum = 0.0 * bends[e];
+            for (const auto& [other, is_reversed] : facing[e]) {
+                sum += is_reversed ? MatrixX(bends[other].colwise().reverse()) : bends[other];
+            }
+            bends[e] = sum / static_cast<double>(facing[e].size());
+        }
+    }
+    for (int e = 0; e < n_edges; ++e) {
+        if (!is_given[e]) nets.edges[e] = straight_edge(cells, nets, e) + bends[e];
+    }
+}
+
 iga::MultiPatch<3> make_multipatch(const VolumetricLayout& layout, const LayoutCells& cells,
                                    LayoutNets nets) {
     nets.edges.resize(cells.edges.size());
     nets.faces.resize(cells.faces.size());
-    for (std::size_t e = 0; e < cells.edges.size(); ++e) {
-        if (nets.edges[e].rows() == 0) {
-            nets.edges[e] = straight_net(nets.knots[e], nets.nodes.row(cells.edges[e].from),
-                                         nets.nodes.row(cells.edges[e].to));
-        }
+    for (int e = 0; e < static_cast<int>(cells.edges.size()); ++e) {
+        if (nets.edges[e].rows() == 0) nets.edges[e] = straight_edge(cells, nets, e);
     }
     iga::MultiPatch<3> result;
     for (int f = 0; f < static_cast<int>(cells.faces.size()); ++f) {

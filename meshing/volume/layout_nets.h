@@ -27,6 +27,10 @@ struct LayoutNets {
 [[nodiscard]] MatrixX with_border(const LayoutCells& cells, const LayoutNets& nets, int face,
                                   MatrixX net);
 
+/// Nets for edges without rows: the straight line plus, by the graph Laplacian over edges that face
+/// each other, how those of the sheet that are given differ from theirs.
+void bend_edges(const LayoutCells& cells, LayoutNets& nets);
+
 /// One patch per cuboid with its directions, Coons volumes of their faces; interfaces where cuboids
 /// share a face, sets those of the layout. Nets without rows are filled first.
 [[nodiscard]] iga::MultiPatch<3> make_multipatch(const VolumetricLayout& layout,

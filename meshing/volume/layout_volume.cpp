@@ -121,18 +121,22 @@ void check_border(const LayoutCells& cells, const CellSamples& samples, int face
     }
 }
 
-// The quads' samples by the layout's faces.
-std::vector<CellSamples> samples_of_faces(const LayoutCells& cells, const LayoutSamples& samples,
-                                          const std::vector<CellSamples>& edges) {
+// Outer faces by their nodes, ascending.
+std::map<std::array<int, 4>, int> outer_faces(const LayoutCells& cells) {
     std::map<std::array<int, 4>, int> face_of_nodes;
-    int n_boundary = 0;
     for (std::size_t f = 0; f < cells.faces.size(); ++f) {
         if (cells.faces[f].sides.size() != 1) continue;
         auto nodes = cells.faces[f].nodes;
         std::ranges::sort(nodes);
         face_of_nodes[nodes] = static_cast<int>(f);
-        ++n_boundary;
     }
+    return face_of_nodes;
+}
+
+// The quads' samples by the layout's faces.
+std::vector<CellSamples> samples_of_faces(const LayoutCells& cells, const LayoutSamples& samples,
+                                          const std::vector<CellSamples>& edges) {
+    const auto face_of_nodes = outer_faces(cells);
     std::vector<CellSamples> result(cells.faces.size());
     const QuadLayout& layout = samples.layout;
     for (int q = 0; q < layout.n_quads(); ++q) {
@@ -162,11 +166,11 @@ std::vector<CellSamples> samples_of_faces(const LayoutCells& cells, const Layout
         own.source = q;
         check_border(cells, own, place->second, edges);
     }
-    if (layout.n_quads() != n_boundary) {
+    if (layout.n_quads() != static_cast<int>(face_of_nodes.size())) {
         throw TopologyError(
             "make_layout_volume: the samples have {} quads, the layout {} outer sides; they must "
             "be the same",
-            layout.n_quads(), n_boundary);
+            layout.n_quads(), face_of_nodes.size());
     }
     return result;
 }
@@ -174,7 +178,7 @@ std::vector<CellSamples> samples_of_faces(const LayoutCells& cells, const Layout
 // Distances of samples from splines, collected.
 class Distances {
   public:
-    explicit Distances(LayoutVolumeReport& report) : report_(report) {}
+    explicit Distances(LayoutFitReport& report) : report_(report) {}
 
     void add(const SplineFit& fit, const CellSamples& samples, bool is_arc) {
         sum_ += fit.sum_of_squares;
@@ -188,15 +192,15 @@ class Distances {
     }
 
   private:
-    LayoutVolumeReport& report_;
+    LayoutFitReport& report_;
     double sum_ = 0.0;
     long n_ = 0;
 };
 
-// Nets of all boundary cells.
+// Nets of all boundary cells; nodes inside are 0.
 LayoutNets fit_boundary(const VolumetricLayout& layout, const LayoutCells& cells,
                         const LayoutSamples& samples, const LayoutVolumeOptions& options,
-                        LayoutVolumeReport& report) {
+                        LayoutFitReport& report) {
     LayoutNets nets;
     nets.knots = knots_of_edges(cells, options);
     check_counts(samples);
@@ -233,14 +237,64 @@ LayoutNets fit_boundary(const VolumetricLayout& layout, const LayoutCells& cells
         distances.add(fit, faces[f], false);
         nets.faces[f] = std::move(fit.control_points);
     }
-    if (std::ranges::find(is_given, false) != is_given.end()) {
-        nets.nodes =
-            place_inner_nodes(layout, cells, nets.nodes, is_given, options.parameterization);
-    }
     return nets;
 }
 
+void add_inner_nodes(const VolumetricLayout& layout, const LayoutCells& cells,
+                     const ParameterizationOptions& options, LayoutNets& nets) {
+    std::vector<bool> is_outer(layout.n_nodes, false);
+    for (const auto& [nodes, face] : outer_faces(cells)) {
+        for (const int node : nodes) is_outer[node] = true;
+    }
+    if (std::ranges::find(is_outer, false) == is_outer.end()) return;
+    nets.nodes = place_inner_nodes(layout, cells, nets.nodes, is_outer, options);
+}
+
+// The surface of a quad whose nodes go round.
+iga::Surface surface_of_quad(const LayoutCells& cells, const LayoutNets& nets, int face,
+                             const std::array<int, 4>& nodes) {
+    const auto map =
+        map_of_nodes({nodes[0], nodes[1], nodes[3], nodes[2]}, cells.faces[face].nodes);
+    const iga::TensorSpace<2> own = face_space(cells, nets.knots, face);
+    const auto knots = [&](int direction) {
+        const iga::KnotVector& along = own.knots[map.axis[direction]];
+        return map.reversed[direction] ? along.reversed() : along;
+    };
+    MatrixX points(own.n_basis(), 3);
+    const auto places = grid_places(map, own.sizes());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        points.row(static_cast<long>(i)) = nets.faces[face].row(places[i]);
+    }
+    return {iga::TensorSpace<2>{{knots(0), knots(1)}}, std::move(points)};
+}
+
+// With straight inner edges; if that stays folded, with inner edges that are bent as those around.
+ParameterizedVolume fill_volume(const VolumetricLayout& layout, const LayoutCells& cells,
+                                LayoutNets nets, const ParameterizationOptions& options) {
+    ParameterizedVolume straight =
+        parameterize_volume(make_multipatch(layout, cells, nets), options);
+    if (straight.report.validity == iga::Validity::valid) return straight;
+    bend_edges(cells, nets);
+    ParameterizedVolume bent = parameterize_volume(make_multipatch(layout, cells, nets), options);
+    return bent.report.validity < straight.report.validity ? bent : straight;
+}
+
 }  // namespace
+
+LayoutSurfaces make_layout_surfaces(const VolumetricLayout& layout, const LayoutSamples& samples,
+                                    const LayoutVolumeOptions& options) {
+    const LayoutCells cells = make_layout_cells(layout);
+    LayoutSurfaces result;
+    const LayoutNets nets = fit_boundary(layout, cells, samples, options, result.report);
+    const auto face_of_nodes = outer_faces(cells);
+    for (const auto& nodes : samples.layout.quads()) {
+        auto sorted = nodes;
+        std::ranges::sort(sorted);
+        result.surfaces.patches.push_back(
+            surface_of_quad(cells, nets, face_of_nodes.at(sorted), nodes));
+    }
+    return result;
+}
 
 LayoutVolume make_layout_volume(const VolumetricLayout& layout, const LayoutSamples& samples,
                                 const LayoutVolumeOptions& options) {
@@ -250,8 +304,8 @@ LayoutVolume make_layout_volume(const VolumetricLayout& layout, const LayoutSamp
     LayoutVolumeReport report;
     report.euler_characteristic = complex.euler_characteristic();
     LayoutNets nets = fit_boundary(layout, cells, samples, options, report);
-    auto [volume, parameterization] = parameterize_volume(
-        make_multipatch(layout, cells, std::move(nets)), options.parameterization);
+    add_inner_nodes(layout, cells, options.parameterization, nets);
+    auto [volume, parameterization] = fill_volume(layout, cells, nets, options.parameterization);
     if (options.slide_boundary && parameterization.validity == iga::Validity::valid) {
         volume = optimize_volume(volume, BoundaryFeatures(volume), {.hold_reentrant_edges = false})
                      .volume;

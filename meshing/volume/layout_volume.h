@@ -23,14 +23,18 @@ struct LayoutVolumeOptions {
     bool slide_boundary = false;
 };
 
-struct LayoutVolumeReport {
-    int euler_characteristic = 0;
-    /// Distances of the samples from the boundary's splines before it slides: largest, the arc or
-    /// quad of the samples that has it (quad -1: the arc), and root of the mean square.
+/// Distances of the samples from the boundary's splines before it slides.
+struct LayoutFitReport {
+    /// The largest, and the arc or quad of the samples that has it (quad -1: the arc).
     double max_distance = 0.0;
     int worst_arc = -1;
     int worst_quad = -1;
+    /// Root of the mean square.
     double rms_distance = 0.0;
+};
+
+struct LayoutVolumeReport : LayoutFitReport {
+    int euler_characteristic = 0;
     ParameterizationReport parameterization;
     iga::QualitySummary<3> quality;
 };
@@ -40,13 +44,27 @@ struct LayoutVolume {
     LayoutVolumeReport report;
 };
 
+struct LayoutSurfaces {
+    /// In the order of the samples' quads, normals outwards; no interfaces.
+    iga::MultiPatch<2> surfaces;
+    LayoutFitReport report;
+};
+
+/// The boundary of make_layout_volume alone: one spline surface per quad.
+///
+/// @throws InputError, TopologyError  as make_layout_volume, for the samples
+[[nodiscard]] LayoutSurfaces make_layout_surfaces(const VolumetricLayout& layout,
+                                                  const LayoutSamples& samples,
+                                                  const LayoutVolumeOptions& options = {});
+
 /// One trivariate spline per cuboid of a layout, whose boundary runs near samples of a surface.
 ///
 /// Corners interpolate the nodes, then each arc is fitted once, then each face once with its
 /// border fixed; nodes inside are placed with straight cuboids (see place_inner_nodes), inner edges
 /// are straight, inner faces and volumes Coons patches; then all control points that are not on the
-/// boundary move (see parameterize_volume). All edges of a sheet have one open knot vector, uniform
-/// unless given: neighbours share control points exactly.
+/// boundary move (see parameterize_volume). If cuboids stay folded, inner edges start bent as those
+/// around them (see bend_edges). All edges of a sheet have one open knot vector, uniform unless
+/// given: neighbours share control points exactly.
 ///
 /// Whether det J is certified, and the quality: see the report.
 ///

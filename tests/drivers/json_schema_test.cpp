@@ -99,13 +99,19 @@ TEST_CASE("schema: a run's JSON has the keys and types that are documented", "[d
 TEST_CASE("schema: the JSON of mesh has the keys and types that are documented", "[drivers]") {
     const tests::TemporaryFolder folder;
     const std::string job = GENERATE("plate_with_two_holes --edge-length 8",
-                                     "pant --open caps --stage volume --element-size 20");
+                                     "pant --open caps --stage surfaces --element-size 20",
+                                     "pant --open caps --stage hexes --points 3 --element-size 20",
+                                     "pant --open caps --stage field");
     const auto result = tests::run_couture("mesh --json " + job, folder.path());
     REQUIRE(result.exit_code == 0);
     std::map<std::string, Json> found;
     collect(Json::parse(result.output), "", found);
     CHECK(found.count("patches[].boundary[].left") == 1);
-    CHECK(found.count("volume.signature") == (job.starts_with("pant") ? 1 : 0));
+    const bool has_hexes = job.find("hexes") != std::string::npos;
+    CHECK(found.count("volume.signature") == (has_hexes ? 1 : 0));
+    CHECK(found.count("hexes.elements") == (has_hexes ? 1 : 0));
+    CHECK(found.count("surfaces.area") == (job.find("surfaces") != std::string::npos ? 1 : 0));
+    CHECK(found.count("field.freedom") == (job.ends_with("field") ? 1 : 0));
     check_schema(found, "mesh_schema.md");
 }
 

@@ -47,8 +47,9 @@ TEST_CASE("mesh family: members are done, those that fail are reported", "[drive
     }
     std::sort(files.begin(), files.end());
     CHECK(files == std::vector<std::string>{"a_volume.xml", "b_volume.xml", "f_family.png",
-                                            "reference_layout.json", "reference_volume.xml"});
-    CHECK(object["files"].size() == 5);
+                                            "f_members.json", "reference_layout.json",
+                                            "reference_volume.xml"});
+    CHECK(object["files"].size() == 6);
     // The same layout by the record of the reference alone.
     const auto again = run_couture(
         "mesh pant --set X1=20 --edge-length 8 --stage volume --like o/reference_layout.json "
@@ -73,4 +74,73 @@ TEST_CASE("mesh family: files are matched by where they lie", "[drivers]") {
     CHECK(result.exit_code == 0);
     CHECK_THAT(result.output, Contains("2 of 2 members done, midpoints of 0 not certified"));
     CHECK_THAT(io::read_text(folder.path() / "out/f/b_volume.xml"), Contains("face_6"));
+}
+
+TEST_CASE("mesh family: of a member with other features a picture is left", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert cube a.off", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("convert cylinder other.off", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("convert cube --set length=120 b.off", folder.path()).exit_code == 0);
+    io::write_text(folder.path() / "m.csv", "name,surface\nother,other.off\nb,b.off\n");
+    io::write_text(folder.path() / "f.toml",
+                   "[geometry]\nsurface = \"a.off\"\n[meshing]\nelement_size = 50\n[family]\n"
+                   "parameters = \"m.csv\"\n");
+    const auto result = run_couture("mesh f.toml --json --out o", folder.path());
+    CHECK(result.exit_code == 1);
+    auto object = nlohmann::json::parse(result.output);
+    CHECK(object["failed_members"] == 1);
+    CHECK(object["members"][1]["name"] == "other");
+    CHECK(object["members"][1]["status"] == "failed");
+    CHECK_THAT(object["members"][1]["reason"].get<std::string>(),
+               Contains("is closed and has no corner"));
+    CHECK(object["members"][2]["status"] == "done");
+    CHECK(std::filesystem::file_size(folder.path() / "o/other_failed_pants.png") > 1000);
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "o/other_volume.xml"));
+    // What failed is tried again, the others are not.
+    const auto resumed = run_couture("mesh f.toml --out o --resume", folder.path());
+    CHECK(resumed.exit_code == 1);
+    CHECK_THAT(resumed.errors, Contains("reference is done already") && Contains("other failed") &&
+                                   Contains("b is done already"));
+}
+
+TEST_CASE("mesh family: an interrupted run leaves whole files and is resumed", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto file = [&](const char* name) { return folder.path() / "o" / name; };
+    io::write_text(folder.path() / "f.toml", deck);
+    io::write_text(folder.path() / "m.csv", "name,X1\na,20\nb,-20\nc,10\nd,-10\n");
+    // As soon as a member is there.
+    const auto stopped = run_couture(
+        "mesh f.toml --out o & pid=$!; while kill -0 $pid && [ ! -e o/a_volume.xml ]; do "
+        "sleep 0.05; done; kill -INT $pid; wait $pid",
+        folder.path());
+    CHECK(stopped.exit_code == 130);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o")) {
+        CAPTURE(entry.path().string());
+        const bool is_whole = entry.path().extension() == ".json" ||
+                              Contains("</xml>").match(io::read_text(entry.path()));
+        CHECK(is_whole);
+    }
+    CHECK_FALSE(std::filesystem::exists(file("d_volume.xml")));
+    const auto time = std::filesystem::last_write_time(file("reference_volume.xml"));
+
+    const auto resumed = run_couture("mesh f.toml --out o --resume --json", folder.path());
+    REQUIRE(resumed.exit_code == 0);
+    CHECK(std::filesystem::last_write_time(file("reference_volume.xml")) == time);
+    CHECK_THAT(resumed.errors, Contains("reference is done already"));
+    auto object = nlohmann::json::parse(resumed.output);
+    auto whole =
+        nlohmann::json::parse(run_couture("mesh f.toml --out whole --json", folder.path()).output);
+    for (auto* run : {&object, &whole}) {
+        for (auto& member : (*run)["members"]) member.erase("seconds");
+    }
+    CHECK(object["members"] == whole["members"]);
+    CHECK(io::read_text(file("d_volume.xml")) ==
+          io::read_text(folder.path() / "whole/d_volume.xml"));
+
+    const auto other =
+        run_couture("mesh f.toml --out o --resume --set meshing.element_size=30", folder.path());
+    CHECK(other.exit_code == 2);
+    CHECK_THAT(other.errors, Contains("f_members.json was written by another deck"));
+    CHECK_THAT(run_couture("mesh cube --resume", folder.path()).errors,
+               Contains("--resume goes on with the members of a family"));
 }

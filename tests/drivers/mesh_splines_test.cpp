@@ -50,7 +50,8 @@ TEST_CASE("mesh: surfaces of a pipe become volumes and hexahedra", "[drivers]") 
              {"mesh pipe.xml --stage hexes --points 1", "there must be 2 or more"},
              {"mesh pipe.xml --stage volume --png", "only --stage, --points and --out"},
              {"mesh out/pipe/pipe_volume.xml --stage volume", "holds volumes"},
-             {"mesh plate --points 3", "--points is for spline files"}}) {
+             {"mesh plate --points 3", "3 points are for stage hexes"},
+             {"mesh cube --stage hexes --points 1", "hexahedra need 2 or more"}}) {
         const auto refused = run_couture(arguments, folder.path());
         CAPTURE(arguments);
         CHECK(refused.exit_code == 2);

@@ -153,6 +153,17 @@ TEST_CASE("info: surfaces and parts are described, with problems too", "[drivers
     CHECK(run_couture("info none.ply", folder.path()).exit_code == 2);
 }
 
+TEST_CASE("parts: their names come before folders and files", "[drivers]") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path() / "plate");
+    io::write_text(folder.path() / "cube", "no surface");
+    for (const std::string command : {"info plate", "info cube", "mesh cube --stage surface"}) {
+        CAPTURE(command);
+        CHECK(run_couture(command, folder.path()).exit_code == 0);
+    }
+    CHECK_THAT(run_couture("info ./cube", folder.path()).errors, Contains("./cube"));
+}
+
 TEST_CASE("convert: surfaces to all formats, not to splines", "[drivers]") {
     const TemporaryFolder folder;
     for (const std::string ending : {"stl", "obj", "off", "ply", "vtp"}) {

@@ -63,6 +63,11 @@ TEST_CASE("family members: the star of a part's parameters", "[io]") {
     CHECK(star[2].parameters == std::map<std::string, double>{{"R1", 15.0}});
     const auto level_2 = members_of(folder, "design = \"star\"\nlevel = 2", "part = \"pant\"");
     CHECK(level_2.size() == 37);
+    const auto some = members_of(folder, "design = \"star\"\nmembers = [\"H1_low\", \"R2_high\"]");
+    REQUIRE(some.size() == 3);
+    CHECK(some[0].name == "reference");
+    CHECK(some[1].name == "R2_high");
+    CHECK(some[2].name == "H1_low");
     // In metres.
     const auto in_metres = io::family_members(io::parse_mesh_deck(
         "[units]\nsystem = \"m N Pa\"\n[geometry]\npart = \"seal\"\n[family]\ndesign = \"star\"\n"
@@ -91,6 +96,8 @@ TEST_CASE("family members: mistakes are named with their line", "[io]") {
     refused("name\n../a\n", "m.csv:2: '../a' is no name of a member");
     refused("name,surface\na,none.stl\n", "m.csv:2: there is no file");
     refused("name,R1\nsmall,1\n", "did you mean 'small'", "reference = \"smal\"");
+    CHECK_THROWS_WITH(members_of(folder, "design = \"star\"\nmembers = \"R1_lo\""),
+                      Contains("[family] members 'R1_lo' is none of the members; did you mean"));
     CHECK_THROWS_WITH(members_of(folder, "level = 2"), Contains("needs either 'parameters'"));
     CHECK_THROWS_WITH(members_of(folder, "parameters = \"m.csv\"\nlevel = 2"),
                       Contains("'level' belongs to 'design'"));

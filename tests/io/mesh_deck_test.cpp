@@ -68,6 +68,30 @@ corners = ["a", "b"]
     CHECK(deck.cycles_through.at(0).corners == std::vector<std::string>{"a", "b"});
 }
 
+TEST_CASE("mesh deck: angles are in degrees, or have their unit", "[io]") {
+    const io::MeshDeck deck =
+        parse(wheel + "[meshing]\nfeature_angle = \"100 deg\"\ncorner_angle = \"0.5 rad\"\n");
+    CHECK(deck.features.angle == Approx(std::numbers::pi * 100.0 / 180.0));
+    CHECK(deck.features.corner_angle == Approx(0.5));
+    CHECK(parse(wheel + "[meshing]\nfeature_angle = \"40 + 60\"\n").features.angle ==
+          Approx(deck.features.angle));
+}
+
+TEST_CASE("mesh deck: how the surface is mapped", "[io]") {
+    const auto solid = [](const std::string& keys) {
+        return parse(wheel + "[meshing]\n" + keys).solid;
+    };
+    using meshing::LayoutMapRoute;
+    CHECK(solid("").route == LayoutMapRoute::aligned);
+    CHECK(solid("parameterization = \"harmonic\"\n").route == LayoutMapRoute::harmonic);
+    CHECK(solid("parameterization = \"quadratic\"\n").route == LayoutMapRoute::quadratic);
+    CHECK(solid("alignment = 2\nrelocations = 25\n").alignment == 2.0);
+    CHECK(solid("alignment = 2\nrelocations = 25\n").max_relocations == 25);
+    CHECK_THROWS_WITH(solid("parameterization = \"quadratic\"\nalignment = 2\n"),
+                      Contains("no place beside parameterization = \"quadratic\""));
+    CHECK_THROWS_WITH(solid("relocations = -1\n"), Contains("relocations"));
+}
+
 TEST_CASE("mesh deck: what is left out has its default", "[io]") {
     const io::MeshDeck deck = parse(wheel);
     CHECK(deck.stage == "pants");
@@ -91,6 +115,9 @@ TEST_CASE("mesh deck: mistakes name the line and the rule", "[io]") {
     refused(wheel + "[meshing]\nstages = 1\n", "did you mean 'stage'");
     refused(wheel + "[meshing]\nedge_length = -1\n", "edge_length");
     refused(wheel + "[meshing]\nfeature_angle = 180\n", "feature_angle");
+    refused(wheel + "[meshing]\nfeature_angle = \"190 deg\"\n", "job.toml:4");
+    refused(wheel + "[meshing]\ncorner_angle = \"3.2 rad\"\n", "corner_angle");
+    refused(wheel + "[meshing]\ncorner_angle = \"3 mm\"\n", "corner_angle");
     refused(wheel + "[meshing]\nopen_at = [1, 2, 3]\n", "expected points [x, y, z]");
     refused(wheel + "[meshing]\nopen_at = [[1, 2]]\n", "open_at");
     refused(wheel + "[meshing]\nopen_at = 3\n", "expected a list of points");

@@ -88,6 +88,7 @@ TEST_CASE("layout record: what is written is read again", "[io]") {
                               .record;
     record.elements = {3, 4, 5};
     record.rotations = {{2, 1}};
+    record.starts = {{3, {0.1, -2.0, 1e-30}}};
     record.sets = {{"low", {{0, 2}, {0, 4}}}};
     const io::TemporaryFolder folder;
     const auto path = folder / "layout.json";
@@ -97,6 +98,7 @@ TEST_CASE("layout record: what is written is read again", "[io]") {
     REQUIRE(again.layout);
     CHECK(again.layout->elements == record.elements);
     CHECK(again.layout->rotations == record.rotations);
+    CHECK(again.layout->starts == record.starts);
     CHECK(again.layout->sets == record.sets);
     REQUIRE(again.layout->patches.size() == 1);
     const LayoutRecord::Patch& first = record.patches[0];

@@ -69,7 +69,9 @@ inline std::vector<GuideLoop> casting_loops() {
 }
 
 // A part, opened at its caps and cut into pants.
-inline Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops = {}) {
+// @param sharp  above 0: cuts run along sharp edges, below: across them
+inline Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops = {},
+                    double sharp = -0.75) {
     const PartSurface part = make_part_surface(name);
     SurfaceMesh closed = make_surface_mesh(part.soup);
     const Features features = detect_features(closed);
@@ -87,7 +89,8 @@ inline Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops
     job.caps = caps_of(closed, opened);
     job.features = detect_features(job.opened);
     PantsOptions named;
-    named.cycle.sharp = -0.75;
+    named.cycle.sharp = sharp;
+    named.merge.sharp = sharp > 0.0 ? sharp : 0.0;
     named.loops = loops;
     for (const BoundaryLoop& loop : boundary_loops(job.opened)) {
         named.boundary_names.push_back(caps[opened.cap_of_vertex[loop.vertices[0].idx()]].name);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "iga/core/error.h"
+#include "meshing/field/layout_field.h"
 #include "meshing/parameterization/map_samples.h"
 #include "meshing/parameterization/sample_grid.h"
 #include "meshing/parameterization/sheet_sizes.h"
@@ -140,7 +141,7 @@ TEST_CASE("layout map: arcs of a developable surface straighten", "[parameteriza
         }
     }
     // Without optimisation it stays as it starts.
-    options.is_optimised = false;
+    options.route = LayoutMapRoute::harmonic;
     const LayoutMap harmonic = make_layout_map(tube.mesh, tube.embedding, cells, options);
     CHECK(harmonic.report.energies == std::vector<double>{report.energies.front()});
 }
@@ -202,23 +203,55 @@ TEST_CASE("layout map: points of feature arcs lie on their edges", "[parameteriz
 
 TEST_CASE("layout map: directions turn it", "[parameterization]") {
     const LaidOutSurface torus = make_torus_layout(8, {0, 12, 32}, {0, 2, 4});
-    LayoutMapOptions options;
-    options.directions.emplace();
+    std::vector<double> angles;
     for (const FaceHandle face : torus.mesh.faces()) {
         // Around the axis.
         const HalfedgeHandle h = torus.mesh.halfedge_handle(face);
         const Vector3& a = torus.mesh.point(torus.mesh.from_vertex_handle(h));
         const Vector3 edge = torus.mesh.point(torus.mesh.to_vertex_handle(h)) - a;
         const Vector3 around = Vector3(-a.y(), a.x(), 0.0);
-        options.directions->angles.push_back(
+        angles.push_back(
             std::atan2(edge.cross(around).dot(face_normal(torus.mesh, face)), edge.dot(around)));
     }
+    const DirectionField field = field_of_angles(torus.mesh, std::move(angles), 4);
+    LayoutMapOptions options;
+    options.directions = FaceDirections{chart_directions(torus.mesh, torus.embedding, field)};
     const LayoutMap free = map_of(torus, 0.2, options);
     options.alignment_weight = 3.0;
     const LayoutMap aligned = map_of(torus, 0.2, options);
     CHECK(aligned.report.n_flipped == 0);
     CHECK(free.report.mean_angle_to_directions > 0.02);
     CHECK(aligned.report.mean_angle_to_directions < 0.9 * free.report.mean_angle_to_directions);
+    options.route = LayoutMapRoute::quadratic;
+    const LayoutMap squares = map_of(torus, 0.2, options);
+    CHECK(squares.report.mean_angle_to_directions < aligned.report.mean_angle_to_directions);
+}
+
+TEST_CASE("layout map: least squares to the field", "[parameterization]") {
+    const auto quadratic = [](const LaidOutSurface& surface, double size) {
+        const LayoutField field =
+            make_layout_field(surface.mesh, surface.embedding, {.principal_strength = 0.0});
+        LayoutMapOptions options;
+        options.route = LayoutMapRoute::quadratic;
+        options.directions =
+            FaceDirections{chart_directions(surface.mesh, surface.embedding, field.field)};
+        return map_of(surface, size, options);
+    };
+    // A cube's field is the gradient of its map: nothing is left of the squares.
+    const LayoutMap cube = quadratic(make_cube_layout(4, same, all), 0.5);
+    CHECK(cube.report.n_flipped == 0);
+    CHECK(cube.report.energies.back() < 1e-12);
+    CHECK(cube.report.cell_size == Approx(0.5));
+    // Squares only fall, until they settle.
+    const LayoutMap sphere = quadratic(make_sphere_layout(6, Vector3(0.3, 0.2, 0.0)), 0.3);
+    CHECK(sphere.report.is_converged);
+    for (std::size_t k = 1; k < sphere.report.energies.size(); ++k) {
+        CHECK(sphere.report.energies[k] <= sphere.report.energies[k - 1]);
+    }
+    // Quads of very different sizes have as many cells: nothing keeps triangles open.
+    const LaidOutSurface uneven = make_sphere_layout(6, Vector3(0.9, 0.1, 0.0));
+    CHECK(quadratic(uneven, 0.3).report.n_flipped > 0);
+    CHECK(map_of(uneven, 0.3).report.n_flipped == 0);
 }
 
 TEST_CASE("layout map: what does not fit is refused", "[parameterization]") {
@@ -233,6 +266,10 @@ TEST_CASE("layout map: what does not fit is refused", "[parameterization]") {
     options.cell_lengths.clear();
     options.directions.emplace();
     CHECK_THROWS_AS(make_layout_map(cube.mesh, cube.embedding, cells, options), InputError);
+    options.directions.reset();
+    options.route = LayoutMapRoute::quadratic;
+    CHECK_THROWS_WITH(make_layout_map(cube.mesh, cube.embedding, cells, options),
+                      Catch::Contains("needs directions"));
     const LayoutMap map = make_layout_map(cube.mesh, cube.embedding, cells);
     CHECK_THROWS_AS(sample_layout_map(cube.mesh, cube.embedding, map, 0), InputError);
     EmbeddedLayout broken = cube.embedding;

@@ -80,6 +80,43 @@ TEST_CASE("relocate nodes: corners stay, features keep their points", "[paramete
     CHECK(quality.hausdorff_distance < 1e-9);
 }
 
+TEST_CASE("relocate nodes: a finger of the surface stays covered", "[parameterization]") {
+    // On the cube's upper face, steep enough for the grid to have less energy without it.
+    const auto move = [](const Vector3& p) {
+        const double r = p.head<2>().norm();
+        return p.z() < 1.0 ? p
+                           : Vector3(p + 1.5 * std::exp(-std::pow(r / 0.35, 4)) * Vector3::UnitZ());
+    };
+    const LaidOutSurface cube = make_cube_layout(24, move, [](const auto&) { return true; });
+    const LayoutSamples start = samples_of(cube, 10);
+    const RelocatedSamples moved = relocate_nodes(cube.mesh, cube.embedding, start);
+    CHECK(moved.report.n_inverted == 0);
+    CHECK(moved.report.energies.back() < moved.report.energies.front());
+    const double before = quad_quality(to_quad_mesh(start), cube.mesh).hausdorff_distance;
+    const double after = quad_quality(to_quad_mesh(moved.samples), cube.mesh).hausdorff_distance;
+    CAPTURE(before, after);
+    CHECK(before < 0.03);
+    CHECK(after < 0.05);
+}
+
+TEST_CASE("relocate nodes: a point pushed over its neighbours comes back", "[parameterization]") {
+    const LaidOutSurface cube = make_cube_layout(
+        4, [](const Vector3& p) { return p; }, [](const auto&) { return true; });
+    constexpr int n_cells = 6;
+    LayoutSamples pushed = samples_of(cube, n_cells);
+    const LayoutSamples even = pushed;
+    constexpr int middle = 3 * (n_cells + 1) + 3;
+    MatrixX& points = pushed.quads[0];
+    points.col(middle) += 1.7 * (points.col(middle + 1) - points.col(middle)) +
+                          0.4 * (points.col(middle + n_cells + 1) - points.col(middle));
+    const RelocatedSamples moved = relocate_nodes(cube.mesh, cube.embedding, pushed);
+    CHECK(moved.report.n_inverted_at_start > 0);
+    CHECK(moved.report.n_inverted == 0);
+    for (std::size_t q = 0; q < even.quads.size(); ++q) {
+        CHECK((moved.samples.quads[q] - even.quads[q]).cwiseAbs().maxCoeff() < 1e-3);
+    }
+}
+
 TEST_CASE("refine samples: points stay on the surface, coarse ones where they were",
           "[parameterization]") {
     const LaidOutSurface sphere = make_sphere_layout(10, Vector3::Zero());

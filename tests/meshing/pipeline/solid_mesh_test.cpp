@@ -43,6 +43,59 @@ TEST_CASE("mesh_solid: parts become certified splines near their surface", "[pip
     }
 }
 
+TEST_CASE("mesh_solid: tori that meet become certified splines", "[pipeline]") {
+    const SolidMesh solid = mesh_solid(cuboids_of(cut_part("double_torus", {}, 4.0)));
+    const auto& report = solid.volume->report;
+    CHECK(report.parameterization.validity == iga::Validity::valid);
+    CHECK(report.quality.min_scaled_jacobian > 0.2);
+    CHECK(report.quality.mean_scaled_jacobian > 0.8);
+    CHECK(solid.distance->surface < 1e-3);
+    CHECK(solid.distance->features < 5e-4);
+    const auto refined =
+        iga::refine<3>(solid.volume->volume, std::nullopt, std::array<int, 3>{8, 8, 8});
+    for (const auto& patch : refined.patches) {
+        CHECK(iga::certify(patch).validity == iga::Validity::valid);
+    }
+}
+
+TEST_CASE("mesh_solid: the three routes of the map", "[pipeline]") {
+    const std::string name = GENERATE("double_t", "half_seal");
+    CAPTURE(name);
+    const Job job = cut_part(name);
+    SolidMeshOptions options;
+    options.last = SolidStage::quads;
+    options.max_relocations = 0;
+    constexpr double hardly = 1e-9;
+    options.alignment = hardly;
+    const SolidMesh free = mesh_solid(cuboids_of(job), options);
+    options.alignment = 10.0;
+    const SolidMesh drawn = mesh_solid(cuboids_of(job), options);
+    CHECK(drawn.map->report.n_flipped == 0);
+    CHECK(drawn.map->report.is_converged);
+    CHECK(drawn.map->report.mean_angle_to_directions < free.map->report.mean_angle_to_directions);
+    // Nodes did not move: quads are those of the map.
+    CHECK(drawn.relocation->energies.size() == 1);
+    CHECK(drawn.relocation->largest_move < 1e-9);
+
+    options.alignment = 0.0;
+    options.last = SolidStage::map;
+    options.route = LayoutMapRoute::quadratic;
+    const SolidMesh squares = mesh_solid(cuboids_of(job), options);
+    CHECK(squares.map->report.mean_angle_to_directions <
+          drawn.map->report.mean_angle_to_directions);
+    CHECK(squares.mapped_quads.has_value() == (squares.map->report.n_flipped == 0));
+    if (name == "double_t") {
+        REQUIRE(squares.map->report.n_flipped > 0);
+        options.last = SolidStage::quads;
+        CHECK_THROWS_WITH(mesh_solid(cuboids_of(job), options), Catch::Contains("are flipped"));
+        options.last = SolidStage::map;
+    }
+    options.route = LayoutMapRoute::harmonic;
+    const SolidMesh harmonic = mesh_solid(cuboids_of(job), options);
+    CHECK(harmonic.map->report.n_flipped == 0);
+    CHECK(harmonic.map->report.energies.size() == 1);
+}
+
 TEST_CASE("mesh_solid: stages end where they are asked to, options are checked", "[pipeline]") {
     const Job job = cut_part("pant");
     SolidMeshOptions options;
@@ -57,6 +110,9 @@ TEST_CASE("mesh_solid: stages end where they are asked to, options are checked",
     cuboids.record.elements = quads.cuboids.record.elements;
     cuboids.record.elements.pop_back();
     CHECK_THROWS_AS(mesh_solid(cuboids, options), TopologyError);
+    options.max_relocations = -1;
+    CHECK_THROWS_AS(run(), InputError);
+    options.max_relocations = 5;
     options.samples_per_element = 1;
     CHECK_THROWS_AS(run(), InputError);
     options.samples_per_element = 4;

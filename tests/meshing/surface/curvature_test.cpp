@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "iga/core/error.h"
+#include "meshing/parts/part_surface.h"
+#include "meshing/surface/features.h"
 #include "tests/meshing/surface/surface_samples.h"
 
 using namespace couture;
@@ -159,6 +161,29 @@ TEST_CASE("Curvature: the tensor of a tube converges to 0 and 1 / radius", "[mes
         last = error;
     }
     REQUIRE(last < 0.02);
+}
+
+TEST_CASE("Curvature: discs end at sharp edges", "[meshing][surface]") {
+    const PartSurface part = make_part_surface("cylinder");
+    SurfaceMesh mesh = make_surface_mesh(part.soup);
+    static_cast<void>(detect_features(mesh));
+    double radius = 0.0;
+    for (const auto vertex : mesh.vertices()) {
+        radius = std::max(radius, mesh.point(vertex).head<2>().norm());
+    }
+    const auto within = principal_curvatures(mesh);
+    const auto across = principal_curvatures(mesh, {.crosses_features = true});
+    // Between a flat end and the wall: one of both, not a mean of them and the rim.
+    double largest_across = 0.0;
+    for (const auto vertex : mesh.vertices()) {
+        const auto& at = within[vertex.idx()];
+        const bool is_wall = std::abs(at.normal.z()) < 0.5;
+        REQUIRE(at.maximum == Approx(is_wall ? 1.0 / radius : 0.0).margin(0.1 / radius));
+        REQUIRE(std::abs(at.minimum) < 0.1 / radius);
+        if (is_wall) REQUIRE(std::abs(at.minimum_direction.z()) > 0.999);
+        largest_across = std::max(largest_across, across[vertex.idx()].maximum);
+    }
+    REQUIRE(largest_across > 2.0 / radius);
 }
 
 TEST_CASE(

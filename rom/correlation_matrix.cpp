@@ -1,0 +1,164 @@
+#include "rom/correlation_matrix.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cassert>
+#include <limits>
+
+namespace couture::rom {
+
+namespace {
+
+std::vector<int> sizes_of(const std::vector<MatrixX>& matrices) {
+    std::vector<int> sizes;
+    for (const MatrixX& matrix : matrices) {
+        sizes.push_back(static_cast<int>(matrix.cols()));
+    }
+    return sizes;
+}
+
+VectorX kronecker(const std::vector<VectorX>& vectors) {
+    VectorX product = VectorX::Ones(1);
+    for (const VectorX& vector : vectors) {
+        VectorX next(product.size() * vector.size());
+        for (Eigen::Index i = 0; i < product.size(); ++i) {
+            next.segment(i * vector.size(), vector.size()) = product[i] * vector;
+        }
+        product = std::move(next);
+    }
+    return product;
+}
+
+std::vector<MatrixX> transposed(const std::vector<MatrixX>& matrices) {
+    std::vector<MatrixX> result;
+    for (const MatrixX& matrix : matrices) {
+        result.push_back(matrix.transpose());
+    }
+    return result;
+}
+
+/// Smallest over largest eigenvalue that rounding leaves meaningful.
+double least_ratio(Eigen::Index n) {
+    return static_cast<double>(n) * std::numeric_limits<double>::epsilon();
+}
+
+}  // namespace
+
+MatrixX apply_along(const MatrixX& A, int i_factor, const std::vector<int>& sizes,
+                    const MatrixX& B) {
+    Eigen::Index before = 1;
+    Eigen::Index after = 1;
+    for (int g = 0; g < static_cast<int>(sizes.size()); ++g) {
+        (g < i_factor ? before : after) *= g == i_factor ? 1 : sizes[g];
+    }
+    const Eigen::Index n = A.cols();
+    const Eigen::Index m = A.rows();
+    assert(n == sizes[i_factor] && B.rows() == before * n * after);
+    MatrixX result(before * m * after, B.cols());
+    for (Eigen::Index column = 0; column < B.cols(); ++column) {
+        for (Eigen::Index block = 0; block < before; ++block) {
+            // Columns of this map run along the factor: after x n.
+            const Eigen::Map<const MatrixX> from(B.col(column).data() + block * n * after, after,
+                                                 n);
+            Eigen::Map<MatrixX> to(result.col(column).data() + block * m * after, after, m);
+            to.noalias() = from * A.transpose();
+        }
+    }
+    return result;
+}
+
+MatrixX apply_kronecker(const std::vector<MatrixX>& A, const MatrixX& B) {
+    const std::vector<int> sizes = sizes_of(A);
+    MatrixX result = B;
+    for (int g = 0; g < static_cast<int>(A.size()); ++g) {
+        result = apply_along(A[g], g, sizes, result);
+    }
+    return result;
+}
+
+std::optional<CorrelationMatrix> CorrelationMatrix::factored(std::vector<MatrixX> factors,
+                                                             double nugget) {
+    assert(!factors.empty() && nugget >= 0.0);
+    CorrelationMatrix matrix;
+    matrix.sizes_ = sizes_of(factors);
+    matrix.factors_ = std::move(factors);
+    matrix.nugget_ = nugget;
+    if (!matrix.factor()) {
+        return std::nullopt;
+    }
+    return matrix;
+}
+
+bool CorrelationMatrix::factor() {
+    if (factors_.size() == 1) {
+        MatrixX K = factors_.front();
+        const Eigen::Index n = K.rows();
+        K.diagonal().array() += nugget_;
+        const Eigen::LLT<MatrixX> cholesky(K);
+        if (cholesky.info() != Eigen::Success || cholesky.rcond() < least_ratio(n)) {
+            return false;
+        }
+        L_ = cholesky.matrixL();
+        inverse_ = cholesky.solve(MatrixX::Identity(n, n));
+        return true;
+    }
+    std::vector<VectorX> eigenvalues;
+    for (const MatrixX& K : factors_) {
+        const Eigen::SelfAdjointEigenSolver<MatrixX> solver(K);
+        eigenvectors_.push_back(solver.eigenvectors());
+        // Rounding leaves the smallest ones below zero.
+        eigenvalues.emplace_back(solver.eigenvalues().cwiseMax(0.0));
+    }
+    eigenvalues_ = kronecker(eigenvalues).array() + nugget_;
+    return eigenvalues_.minCoeff() > least_ratio(eigenvalues_.size()) * eigenvalues_.maxCoeff();
+}
+
+MatrixX CorrelationMatrix::solve(const MatrixX& B) const {
+    if (factors_.size() == 1) {
+        const auto L = L_.triangularView<Eigen::Lower>();
+        return L.transpose().solve(L.solve(B));
+    }
+    MatrixX X = apply_kronecker(transposed(eigenvectors_), B);
+    X.array().colwise() /= eigenvalues_.array();
+    return apply_kronecker(eigenvectors_, X);
+}
+
+double CorrelationMatrix::log_determinant() const {
+    return factors_.size() == 1 ? 2.0 * L_.diagonal().array().log().sum()
+                                : eigenvalues_.array().log().sum();
+}
+
+VectorX CorrelationMatrix::inverse_diagonal() const {
+    if (factors_.size() == 1) {
+        return inverse_.diagonal();
+    }
+    std::vector<MatrixX> squares;
+    for (const MatrixX& Q : eigenvectors_) {
+        squares.emplace_back(Q.cwiseAbs2());
+    }
+    return apply_kronecker(squares, eigenvalues_.cwiseInverse());
+}
+
+double CorrelationMatrix::trace_of_inverse_times(int i_factor, const MatrixX& dK) const {
+    if (factors_.size() == 1) {
+        return inverse_.cwiseProduct(dK).sum();
+    }
+    std::vector<VectorX> diagonals;
+    for (int g = 0; g < static_cast<int>(factors_.size()); ++g) {
+        const MatrixX& Q = eigenvectors_[g];
+        const MatrixX& K = g == i_factor ? dK : factors_[g];
+        diagonals.emplace_back(Q.cwiseProduct(K * Q).colwise().sum().transpose());
+    }
+    return kronecker(diagonals).cwiseQuotient(eigenvalues_).sum();
+}
+
+VectorX CorrelationMatrix::apply_derivative(int i_factor, const MatrixX& dK,
+                                            const VectorX& v) const {
+    VectorX result = v;
+    for (int g = 0; g < static_cast<int>(factors_.size()); ++g) {
+        result = apply_along(g == i_factor ? dK : factors_[g], g, sizes_, result);
+    }
+    return result;
+}
+
+}  // namespace couture::rom

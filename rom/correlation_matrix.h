@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "iga/core/types.h"
+
+namespace couture::rom {
+
+/// K = K_1 x K_2 x ... + nugget I, a Kronecker product of symmetric matrices, factored.
+///
+/// One factor is factored by Cholesky's method, several by their eigenvectors: cost and memory are
+/// those of the factors, sum n_g^3 instead of (prod n_g)^3.
+///
+/// Source: [Saatci11] Ch. 5 (products with a nugget through eigenvectors).
+class CorrelationMatrix {
+  public:
+    /// @return nothing if K is not positive definite to rounding
+    [[nodiscard]] static std::optional<CorrelationMatrix> factored(std::vector<MatrixX> factors,
+                                                                   double nugget);
+
+    /// K^-1 B. @param B  n x m, rows with the last factor fastest
+    [[nodiscard]] MatrixX solve(const MatrixX& B) const;
+    [[nodiscard]] double log_determinant() const;
+    /// Diagonal of K^-1.
+    [[nodiscard]] VectorX inverse_diagonal() const;
+    /// Trace of K^-1 (K_1 x ... dK_g ... ): for the derivative by a parameter of factor g.
+    [[nodiscard]] double trace_of_inverse_times(int i_factor, const MatrixX& dK) const;
+    /// (K_1 x ... dK_g ...) v.
+    [[nodiscard]] VectorX apply_derivative(int i_factor, const MatrixX& dK, const VectorX& v) const;
+
+  private:
+    CorrelationMatrix() = default;
+    [[nodiscard]] bool factor();
+
+    std::vector<MatrixX> factors_;
+    double nugget_ = 0.0;
+    std::vector<int> sizes_;
+    /// Of one factor: lower Cholesky factor of K and K^-1.
+    MatrixX L_;
+    MatrixX inverse_;
+    /// Of several: eigenvectors of each, and the eigenvalues of K, the last factor fastest.
+    std::vector<MatrixX> eigenvectors_;
+    VectorX eigenvalues_;
+};
+
+/// Rows i_1, ..., i_g, ... of B combined along factor g by A: the product (I x ... A ... x I) B.
+///
+/// @param A  m x n_g; @param sizes  n_1, n_2, ...; @param B  prod n_g rows
+[[nodiscard]] MatrixX apply_along(const MatrixX& A, int i_factor, const std::vector<int>& sizes,
+                                  const MatrixX& B);
+
+/// (A_1 x A_2 x ...) B for square matrices.
+[[nodiscard]] MatrixX apply_kronecker(const std::vector<MatrixX>& A, const MatrixX& B);
+
+}  // namespace couture::rom

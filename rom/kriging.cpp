@@ -1,0 +1,318 @@
+#include "rom/kriging.h"
+
+#include <Eigen/Cholesky>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "iga/core/error.h"
+#include "rom/bounded_minimum.h"
+#include "rom/designs.h"
+
+namespace couture::rom {
+
+namespace {
+
+/// Of the unit cube's edge. Longer ones don't differ from a polynomial, shorter ones from noise.
+constexpr double shortest_length = 0.05;
+constexpr double longest_length = 20.0;
+constexpr double least_nugget = 1e-10;
+constexpr double largest_nugget = 1.0;
+/// Values that are constant but for rounding.
+constexpr double least_variance = std::numeric_limits<double>::min();
+
+/// First input of each factor.
+std::vector<int> offsets(const TensorDesign& design) {
+    std::vector<int> first;
+    int n = 0;
+    for (const MatrixX& factor : design.factors) {
+        first.push_back(n);
+        n += static_cast<int>(factor.cols());
+    }
+    return first;
+}
+
+std::vector<MatrixX> correlation_factors(const TensorDesign& design, CorrelationKind kind,
+                                         const VectorX& lengths) {
+    const std::vector<int> first = offsets(design);
+    std::vector<MatrixX> factors;
+    for (std::size_t g = 0; g < design.factors.size(); ++g) {
+        const MatrixX& points = design.factors[g];
+        factors.push_back(
+            correlations(kind, points, points, lengths.segment(first[g], points.cols())));
+    }
+    return factors;
+}
+
+/// d K_g / d log(length) of one of its inputs.
+MatrixX length_derivative(const MatrixX& points, int input, CorrelationKind kind, double length,
+                          const MatrixX& K) {
+    MatrixX derivative(K.rows(), K.cols());
+    for (Eigen::Index j = 0; j < K.cols(); ++j) {
+        for (Eigen::Index i = 0; i < K.rows(); ++i) {
+            derivative(i, j) =
+                K(i, j) * log_length_derivative(kind, points(i, input) - points(j, input), length);
+        }
+    }
+    return derivative;
+}
+
+MatrixX trend_functions(const MatrixX& points, Trend trend) {
+    MatrixX F = MatrixX::Ones(points.rows(), trend == Trend::linear ? 1 + points.cols() : 1);
+    if (trend == Trend::linear) {
+        F.rightCols(points.cols()) = points;
+    }
+    return F;
+}
+
+KrigingParameters to_parameters(const VectorX& logarithms, int n_inputs,
+                                const KrigingOptions& options) {
+    return {logarithms.head(n_inputs).array().exp(),
+            options.nugget ? *options.nugget : std::exp(logarithms[n_inputs])};
+}
+
+/// Trend by generalised least squares.
+struct LeastSquares {
+    MatrixX K_inverse_F;
+    MatrixX L;
+    VectorX beta;
+    VectorX weights;
+    double variance = 0.0;
+};
+
+LeastSquares least_squares(const CorrelationMatrix& K, const MatrixX& F, const VectorX& values) {
+    LeastSquares result;
+    result.K_inverse_F = K.solve(F);
+    const Eigen::LLT<MatrixX> normal(F.transpose() * result.K_inverse_F);
+    result.L = normal.matrixL();
+    result.beta = normal.solve(result.K_inverse_F.transpose() * values);
+    const VectorX residual = values - F * result.beta;
+    result.weights = K.solve(residual);
+    result.variance =
+        std::max(residual.dot(result.weights) / static_cast<double>(values.size()), least_variance);
+    return result;
+}
+
+void check(const TensorDesign& design, const VectorX& values, const KrigingOptions& options) {
+    if (design.factors.empty() || values.size() != design.n_points()) {
+        throw InputError("Kriging: {} values for a design of {} points; there must be one for each",
+                         values.size(), design.factors.empty() ? 0 : design.n_points());
+    }
+    if (!values.allFinite()) {
+        throw InputError("Kriging: a value is not finite; leave its point out");
+    }
+    const int n_terms = options.trend == Trend::linear ? 1 + design.n_parameters() : 1;
+    if (values.size() <= n_terms) {
+        throw InputError("Kriging: {} points; a trend of {} terms needs at least {}", values.size(),
+                         n_terms, n_terms + 1);
+    }
+    if (options.n_starts < 1 || (options.nugget && !(*options.nugget >= 0.0))) {
+        throw InputError(
+            "Kriging: {} starts, nugget {}; there must be at least 1, and no less "
+            "than 0",
+            options.n_starts, options.nugget.value_or(0.0));
+    }
+}
+
+/// Bounds of the logarithms of lengths and nugget.
+struct Bounds {
+    VectorX lower;
+    VectorX upper;
+};
+
+/// Long lengths make K singular to rounding: the upper bound is the longest, for all inputs alike,
+/// at which it isn't.
+Bounds search_bounds(const TensorDesign& design, const KrigingOptions& options) {
+    const int n_inputs = design.n_parameters();
+    const int n = options.nugget ? n_inputs : n_inputs + 1;
+    Bounds bounds{VectorX::Constant(n, std::log(shortest_length)),
+                  VectorX::Constant(n, std::log(longest_length))};
+    if (!options.nugget) {
+        bounds.lower[n_inputs] = std::log(least_nugget);
+        bounds.upper[n_inputs] = std::log(largest_nugget);
+    }
+    const double nugget = options.nugget.value_or(least_nugget);
+    double longest = longest_length;
+    while (!CorrelationMatrix::factored(
+        correlation_factors(design, options.correlation, VectorX::Constant(n_inputs, longest)),
+        nugget)) {
+        longest *= 0.8;
+        if (longest < shortest_length) {
+            throw InputError(
+                "Kriging: the correlation matrix of {} points is singular; points coincide: take "
+                "one of them out, or allow a nugget",
+                design.n_points());
+        }
+    }
+    bounds.upper.head(n_inputs).setConstant(std::log(longest));
+    return bounds;
+}
+
+KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
+                              const KrigingOptions& options) {
+    const Bounds bounds = search_bounds(design, options);
+    const auto n = static_cast<int>(bounds.lower.size());
+    const MatrixX starts = latin_hypercube_design(n, options.n_starts, options.seed);
+    const auto objective = [&](const VectorX& x, VectorX& gradient) {
+        return kriging_objective(design, values, options, x, gradient);
+    };
+    BoundedMinimum best{{}, std::numeric_limits<double>::infinity()};
+    for (int i = 0; i < options.n_starts; ++i) {
+        const VectorX start =
+            bounds.lower + starts.row(i).transpose().cwiseProduct(bounds.upper - bounds.lower);
+        const BoundedMinimum found = bounded_minimum(objective, start, bounds.lower, bounds.upper);
+        if (found.value < best.value) {
+            best = found;
+        }
+    }
+    return to_parameters(best.x, design.n_parameters(), options);
+}
+
+}  // namespace
+
+double kriging_objective(const TensorDesign& design, const VectorX& values,
+                         const KrigingOptions& options, const VectorX& log_parameters,
+                         VectorX& gradient) {
+    const int n_inputs = design.n_parameters();
+    const KrigingParameters parameters = to_parameters(log_parameters, n_inputs, options);
+    const std::vector<MatrixX> factors =
+        correlation_factors(design, options.correlation, parameters.lengths);
+    const auto K = CorrelationMatrix::factored(factors, parameters.nugget);
+    gradient = VectorX::Zero(log_parameters.size());
+    if (!K) {
+        return std::numeric_limits<double>::infinity();
+    }
+    const auto n = static_cast<double>(values.size());
+    const MatrixX F = trend_functions(design.points(), options.trend);
+    const LeastSquares fit = least_squares(*K, F, values);
+    const std::vector<int> first = offsets(design);
+    for (int g = 0; g < static_cast<int>(factors.size()); ++g) {
+        for (int input = 0; input < design.factors[g].cols(); ++input) {
+            const int i = first[g] + input;
+            const MatrixX dK = length_derivative(design.factors[g], input, options.correlation,
+                                                 parameters.lengths[i], factors[g]);
+            gradient[i] =
+                0.5 * (K->trace_of_inverse_times(g, dK) -
+                       fit.weights.dot(K->apply_derivative(g, dK, fit.weights)) / fit.variance);
+        }
+    }
+    if (!options.nugget) {
+        gradient[n_inputs] =
+            0.5 * parameters.nugget *
+            (K->inverse_diagonal().sum() - fit.weights.squaredNorm() / fit.variance);
+    }
+    return 0.5 * (n * std::log(fit.variance) + K->log_determinant());
+}
+
+Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options)
+    : design_(std::move(design)), options_(options) {
+    check(design_, values, options_);
+    parameters_ = most_likely(design_, values, options_);
+    fit(values);
+}
+
+Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options,
+                 KrigingParameters parameters)
+    : design_(std::move(design)), options_(options), parameters_(std::move(parameters)) {
+    check(design_, values, options_);
+    fit(values);
+}
+
+void Kriging::fit(const VectorX& values) {
+    K_ = CorrelationMatrix::factored(
+        correlation_factors(design_, options_.correlation, parameters_.lengths),
+        parameters_.nugget);
+    if (!K_) {
+        throw InputError(
+            "Kriging: the correlation matrix of {} points is singular with a nugget of {}; points "
+            "coincide, or lengths are too long",
+            design_.n_points(), parameters_.nugget);
+    }
+    LeastSquares fit =
+        least_squares(*K_, trend_functions(design_.points(), options_.trend), values);
+    K_inverse_F_ = std::move(fit.K_inverse_F);
+    trend_factor_ = std::move(fit.L);
+    beta_ = std::move(fit.beta);
+    weights_ = std::move(fit.weights);
+    variance_ = fit.variance;
+}
+
+std::vector<MatrixX> Kriging::correlations_with(const VectorX& point) const {
+    const std::vector<int> first = offsets(design_);
+    std::vector<MatrixX> factors;
+    for (std::size_t g = 0; g < design_.factors.size(); ++g) {
+        const Eigen::Index n = design_.factors[g].cols();
+        factors.push_back(correlations(options_.correlation, point.segment(first[g], n).transpose(),
+                                       design_.factors[g],
+                                       parameters_.lengths.segment(first[g], n)));
+    }
+    return factors;
+}
+
+namespace {
+
+/// (k_1 x k_2 x ...) v for rows k_g.
+double contract(const std::vector<MatrixX>& rows, std::vector<int> sizes, MatrixX v) {
+    for (int g = static_cast<int>(rows.size()) - 1; g >= 0; --g) {
+        v = apply_along(rows[g], g, sizes, v);
+        sizes[g] = 1;
+    }
+    return v(0, 0);
+}
+
+VectorX product_row(const std::vector<MatrixX>& rows) {
+    VectorX product = VectorX::Ones(1);
+    for (const MatrixX& row : rows) {
+        const MatrixX outer = row.transpose() * product.transpose();
+        product = Eigen::Map<const VectorX>(outer.data(), outer.size());
+    }
+    return product;
+}
+
+}  // namespace
+
+double Kriging::value(const VectorX& point) const {
+    assert(point.size() == design_.n_parameters());
+    const double trend =
+        trend_functions(point.transpose(), options_.trend).row(0).dot(beta_.transpose());
+    return trend + contract(correlations_with(point), design_.sizes(), weights_);
+}
+
+Prediction Kriging::predict(const VectorX& point) const {
+    Prediction prediction;
+    const std::vector<MatrixX> rows = correlations_with(point);
+    const VectorX k = product_row(rows);
+    const MatrixX f = trend_functions(point.transpose(), options_.trend);
+    prediction.value = f.row(0).dot(beta_.transpose()) + k.dot(weights_);
+
+    const VectorX u = trend_factor_.triangularView<Eigen::Lower>().solve(
+        K_inverse_F_.transpose() * k - f.row(0).transpose());
+    prediction.variance =
+        variance_ * std::max(0.0, 1.0 - k.dot(K_->solve(k).col(0)) + u.squaredNorm());
+
+    prediction.gradient = options_.trend == Trend::linear ? VectorX(beta_.tail(point.size()))
+                                                          : VectorX(VectorX::Zero(point.size()));
+    const std::vector<int> first = offsets(design_);
+    for (std::size_t g = 0; g < rows.size(); ++g) {
+        const MatrixX& points = design_.factors[g];
+        for (Eigen::Index input = 0; input < points.cols(); ++input) {
+            const Eigen::Index i = first[g] + input;
+            std::vector<MatrixX> slopes = rows;
+            for (Eigen::Index j = 0; j < points.rows(); ++j) {
+                slopes[g](0, j) *= difference_derivative(
+                    options_.correlation, point[i] - points(j, input), parameters_.lengths[i]);
+            }
+            prediction.gradient[i] += contract(slopes, design_.sizes(), weights_);
+        }
+    }
+    return prediction;
+}
+
+VectorX Kriging::leave_one_out() const {
+    // Diagonal of B = K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1; B y are the weights.
+    const MatrixX G = trend_factor_.triangularView<Eigen::Lower>().solve(K_inverse_F_.transpose());
+    const VectorX diagonal = K_->inverse_diagonal() - G.colwise().squaredNorm().transpose();
+    return weights_.cwiseQuotient(diagonal);
+}
+
+}  // namespace couture::rom

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "iga/core/types.h"
+#include "rom/correlation.h"
+#include "rom/correlation_matrix.h"
+#include "rom/tensor_design.h"
+
+namespace couture::rom {
+
+enum class Trend { constant, linear };
+
+struct KrigingOptions {
+    CorrelationKind correlation = CorrelationKind::matern_5_2;
+    Trend trend = Trend::constant;
+    /// Variance of noise over that of the process; without it by maximum likelihood.
+    std::optional<double> nugget = std::nullopt;
+    /// Searches for the largest likelihood, from different lengths.
+    int n_starts = 4;
+    std::uint64_t seed = 1;
+};
+
+/// What a model expects at a point.
+struct Prediction {
+    double value = 0.0;
+    /// Of the value, without noise.
+    double variance = 0.0;
+    /// d value / d point.
+    VectorX gradient;
+};
+
+/// Correlation lengths and nugget with the logarithm of their likelihood.
+struct KrigingParameters {
+    /// One for each input.
+    VectorX lengths;
+    double nugget = 0.0;
+};
+
+/// Minus the logarithm of the likelihood of values, trend and variance eliminated, without its
+/// constant: n / 2 log(variance) + log(det K) / 2.
+///
+/// @param log_parameters  logarithms of the lengths, then of the nugget if `options` leave it open
+/// @param gradient  with respect to these
+/// @return infinity if K is not positive definite
+///
+/// Source: [SacksWelchMitchellWynn89] Sec. 4.
+[[nodiscard]] double kriging_objective(const TensorDesign& design, const VectorX& values,
+                                       const KrigingOptions& options, const VectorX& log_parameters,
+                                       VectorX& gradient);
+
+/// A Gaussian process through values at the points of a design in the unit cube: trend and
+/// variance by generalised least squares, lengths and nugget by maximum likelihood. Designs that
+/// are tensor products cost what their factors cost.
+///
+/// Source: [SacksWelchMitchellWynn89] Eq. (7)-(9).
+class Kriging {
+  public:
+    /// @param values  of all points of the design, in their order
+    /// @throws InputError  for another number of values, values that are not finite, fewer points
+    ///                     than the trend has terms, points that coincide without a nugget
+    Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options = {});
+    /// With parameters that are known, e.g. from a file.
+    Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options,
+            KrigingParameters parameters);
+
+    [[nodiscard]] const KrigingParameters& parameters() const { return parameters_; }
+    /// @param point  n_parameters values; outside the unit cube it extrapolates
+    [[nodiscard]] Prediction predict(const VectorX& point) const;
+    /// predict(point).value at little cost.
+    [[nodiscard]] double value(const VectorX& point) const;
+    /// Value at each point minus its prediction from all others with the same parameters.
+    ///
+    /// Source: [Dubrule83] Eq. (8).
+    [[nodiscard]] VectorX leave_one_out() const;
+
+  private:
+    void fit(const VectorX& values);
+    /// For each factor its points' correlations with a point.
+    [[nodiscard]] std::vector<MatrixX> correlations_with(const VectorX& point) const;
+
+    TensorDesign design_;
+    KrigingOptions options_;
+    KrigingParameters parameters_;
+    std::optional<CorrelationMatrix> K_;
+    /// K^-1 F, factor F^T K^-1 F = L L^T, K^-1 (y - F beta).
+    MatrixX K_inverse_F_;
+    MatrixX trend_factor_;
+    VectorX beta_;
+    VectorX weights_;
+    double variance_ = 0.0;
+};
+
+}  // namespace couture::rom
