@@ -81,7 +81,6 @@ TEST_CASE("mesh, solve: differences of energies shrink with each refinement", "[
         {"double_t", "double_t" + with_caps, "cap_1"},
         {"cylinder", "cylinder" + with_caps, "z_low"},
         {"cube", "cube" + to_volume, "x_low"},
-        {"torus", "torus" + to_volume, "torus"},
         {"plate", "plate" + to_volume, "x_low"},
     }));
     CAPTURE(name);
