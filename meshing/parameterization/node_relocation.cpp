@@ -118,9 +118,7 @@ class CellEnergy {
         system.set_zero();
         for (std::size_t c = 0; c < corners_.size(); ++c) {
             const SymmetricDirichlet term(gradient(state, corners_[c]));
-            add(state, static_cast<int>(c), is_free, term.gradient,
-                {{term.modes.begin(), term.modes.end()},
-                 {term.eigenvalues.begin(), term.eigenvalues.end()}},
+            add(state, static_cast<int>(c), is_free, term.gradient, term.modes, term.eigenvalues,
                 system);
         }
     }
@@ -159,19 +157,19 @@ class CellEnergy {
             cofactor << F(1, 1), -F(1, 0), -F(0, 1), F(0, 0);
             const double inverse_square = 1.0 / (chi * chi);
             const double squares = F.squaredNorm();
-            Modes modes;
+            std::array<Matrix<2>, 5> modes;
+            std::array<double, 5> eigenvalues;
+            eigenvalues.fill(2.0 * (1.0 + inverse_square));
             for (int m = 0; m < 4; ++m) {
-                modes.matrices.push_back(Matrix<2>::Zero());
-                modes.matrices.back()(m / 2, m % 2) = 1.0;
-                modes.eigenvalues.push_back(2.0 * (1.0 + inverse_square));
+                modes[m].setZero();
+                modes[m](m / 2, m % 2) = 1.0;
             }
-            modes.matrices.push_back(cofactor);
-            modes.eigenvalues.push_back(6.0 * squares * slope * slope * inverse_square *
-                                        inverse_square);
+            modes[4] = cofactor;
+            eigenvalues[4] = 6.0 * squares * slope * slope * inverse_square * inverse_square;
             add(state, static_cast<int>(c), is_free,
                 2.0 * (1.0 + inverse_square) * F -
                     (2.0 * squares * slope * inverse_square / chi) * cofactor,
-                modes, system);
+                modes, eigenvalues, system);
         }
     }
 
@@ -235,12 +233,6 @@ class CellEnergy {
     }
 
   private:
-    /// The sum of eigenvalues times outer squares of matrices.
-    struct Modes {
-        std::vector<Matrix<2>> matrices;
-        std::vector<double> eigenvalues;
-    };
-
     /// chi and its derivative.
     [[nodiscard]] static std::pair<double, double> regularised(double det, double width) {
         const double root = std::sqrt(det * det + width * width);
@@ -249,10 +241,12 @@ class CellEnergy {
         return {chi, chi / root};
     }
 
-    /// Adds a corner's gradient and Hessian with respect to F; points that may not move are left
-    /// out.
+    /// Adds a corner's gradient and Hessian (eigenvalues times outer squares of modes) with respect
+    /// to F; points that may not move are left out.
+    template <std::size_t n>
     void add(const SurfaceSlide::State& state, int c, const std::vector<bool>& is_free,
-             const Matrix<2>& of_F, const Modes& modes, NewtonSystem& system) const {
+             const Matrix<2>& of_F, const std::array<Matrix<2>, n>& modes,
+             const std::array<double, n>& eigenvalues, NewtonSystem& system) const {
         const CellCorner& corner = corners_[c];
         const double weight = 1.0 / static_cast<double>(corners_.size());
         const Matrix<3, 2> plane = tangent_plane(state, corner);
@@ -269,9 +263,9 @@ class CellEnergy {
             return Vector<6>(free.cwiseProduct(row));
         };
         Matrix<6> hessian = weight * (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
-        for (std::size_t m = 0; m < modes.matrices.size(); ++m) {
-            const Vector<6> row = pulled_back(modes.matrices[m]);
-            hessian.noalias() += (weight * modes.eigenvalues[m]) * row * row.transpose();
+        for (std::size_t m = 0; m < n; ++m) {
+            const Vector<6> row = pulled_back(modes[m]);
+            hessian.noalias() += (weight * eigenvalues[m]) * row * row.transpose();
         }
         system.add(c, weight * pulled_back(of_F), hessian);
     }
