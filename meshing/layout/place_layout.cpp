@@ -331,7 +331,7 @@ class Placer {
                       .nodes = {from, to},
                       .is_feature = is_on_feature,
                       .is_reflex = is_on_feature && is_blunt(path.vertices),
-                      .name = fmt::format("arc of nodes {}", layout_.arc_name(arc))};
+                      .name = fmt::format("arc of nodes {} and {}", from, to)};
         for (std::size_t k = 0; k + 1 < path.vertices.size(); ++k) {
             mesh_
                 .data(
@@ -456,9 +456,10 @@ class Placer {
         Path path = find_path(arc, from, node_vertex_[to], may_take, cost, end_cost);
         if (path.vertices.size() < 2) {
             throw GeometryError(
-                "layout: there is no way for the arc of nodes {} on the surface, between the "
+                "layout: there is no way for the arc of nodes {} and {} on the surface, between "
+                "the "
                 "arcs beside it; do its nodes lie near the surface?",
-                layout_.arc_name(arc));
+                from, to);
         }
         if (!node_vertex_[to].is_valid()) place(to, path.vertices.back());
         draw(arc, from, to, std::move(path), false);
@@ -522,8 +523,8 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     }
     CuboidDecomposition result;
     result.mesh = mesh;
-    std::vector<LayoutTie> feature_ties = Placer(result.mesh, boundary.layout, placed.positions)
-                                              .follow_features(features, most_reach);
+    std::vector<LayoutTie> feature_ties =
+        Placer(result.mesh, boundary.layout, placed.positions).follow_features(features, most_reach);
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::vector<bool> is_held(result.mesh.n_vertices(), false);
@@ -545,6 +546,15 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
         }
     }
     return result;
+}
+
+double untied_length(const CuboidDecomposition& decomposition) {
+    double length = 0.0;
+    for (const auto edge : decomposition.mesh.edges()) {
+        const auto& data = decomposition.mesh.data(edge);
+        if (data.feature >= 0 && data.curve < 0) length += edge_length(decomposition.mesh, edge);
+    }
+    return length;
 }
 
 }  // namespace couture::meshing

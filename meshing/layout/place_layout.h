@@ -17,7 +17,7 @@ namespace couture::meshing {
 /// way along them is about as short as the arc. Then it is padded. Where that does not cut the surface into discs,
 /// arcs are drawn as shortest paths near to their straight lines, until it does; nodes on them lie
 /// where the surface is nearest. The remaining arcs are those of embed_layout. A feature along
-/// which no arc runs is treated as smooth, see find_rounded_edges.
+/// which no arc runs is treated as smooth, see untied_length.
 ///
 /// @param mesh      closed, with numbers of features on its edges
 /// @param features  its own
@@ -29,5 +29,8 @@ namespace couture::meshing {
 [[nodiscard]] CuboidDecomposition place_layout(
     const SurfaceMesh& mesh, const Features& features, const PlacedLayout& placed,
     double most_reach = std::numeric_limits<double>::infinity());
+
+/// Length of the feature edges of a decomposition's mesh that lie on no arc.
+[[nodiscard]] double untied_length(const CuboidDecomposition& decomposition);
 
 }  // namespace couture::meshing

@@ -56,6 +56,7 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
     const PlacedLayout placed = cuboids_of("half_seal");
     REQUIRE(placed.layout.n_cuboids() == 10);
     CuboidDecomposition cuboids = place_layout(solid.mesh, solid.features, placed);
+    CHECK(untied_length(cuboids) == 0.0);
     CHECK(find_rounded_edges(cuboids).empty());
     CHECK(cuboids.volume.n_cuboids() == 10);
     const double diagonal = bounding_box_diagonal(solid.mesh);
