@@ -106,7 +106,8 @@ std::string surface_of(const PlacedLayout& placed) {
     };
     std::string triangles;
     int n_triangles = 0;
-    for (const auto& quad : layout_boundary(placed.layout).layout.quads()) {
+    const LayoutBoundary boundary = layout_boundary(placed.layout);
+    for (const auto& quad : boundary.layout.quads()) {
         const auto point = [&](int i, int j) {
             const double s = static_cast<double>(i) / n;
             const double t = static_cast<double>(j) / n;
