@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 
 #include "drivers/summary.h"
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
+#include "iga/spline/knot_vector.h"
 #include "io/did_you_mean.h"
 
 namespace couture::drivers {
@@ -16,6 +18,7 @@ namespace couture::drivers {
 namespace {
 
 constexpr int max_threads = 1024;
+constexpr int most_hex_points = 1000;
 
 CLI::App* add_command(CLI::App& app, Command& command, const std::string& name,
                       const std::string& what, std::function<int()> run) {
@@ -111,8 +114,9 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     add_deck_options(sub, *solve);
 
     const auto mesh = std::make_shared<MeshOptions>();
-    sub = add_command(app, command, "mesh", "cut a surface into pants",
-                      [&command, mesh] { return run_mesh(*mesh, command.common); });
+    sub =
+        add_command(app, command, "mesh", "cut a surface into pants, and on to trivariate splines",
+                    [&command, mesh] { return run_mesh(*mesh, command.common); });
     sub->add_option(
            "surface", mesh->surface,
            "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), a "
@@ -125,7 +129,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
         "hexes");
     sub->add_option("--points", mesh->n_points,
                     "points per direction of the hexahedra in each patch (default: as many as "
-                    "control points)");
+                    "control points)")
+        ->check(CLI::Range(2, most_hex_points));
     add_surface_options(sub, *mesh);
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
@@ -147,8 +152,12 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     "put pants with short tubes between them together: patches of up to 3 "
                     "(default) to 6 boundary loops");
     sub->add_option("--element-size", mesh->element_size,
-                    "length of a spline element (default: a twentieth of the diagonal)");
-    sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
+                    "length of a spline element (default: a twentieth of the diagonal)")
+        ->check([](const std::string& text) {
+            return std::strtod(text.c_str(), nullptr) > 0.0 ? "" : "must be positive";
+        });
+    sub->add_option("--degree", mesh->degree, "of the splines (default: 2)")
+        ->check(CLI::Range(1, iga::max_degree));
     sub->add_option("--layout", mesh->layout,
                     "a coarse mesh of cuboids (.mesh, .vtk, or .toml: nodes and cuboids by "
                     "hand) that lies about where the solid does: "

@@ -185,3 +185,53 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     CHECK(turned.exit_code == 0);
     CHECK_THAT(turned.errors, Contains("inside out"));
 }
+
+TEST_CASE("mesh: what the volume lacks is said", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    // One cuboid on a box of two faces' worth of corners: the others are lost.
+    io::write_text(folder.path() / "one.toml", R"([nodes]
+a = [-50, -50, -50]
+b = [50, -50, -50]
+c = [-50, 50, -50]
+d = [50, 50, -50]
+e = [-50, -50, 50]
+f = [50, -50, 50]
+g = [-50, 50, 50]
+h = [50, 50, 50]
+[[cuboid]]
+nodes = ["a", "b", "c", "d", "e", "f", "g", "h"]
+)");
+    const auto fine = tests::run_couture(
+        "mesh cube --layout one.toml --stage volume --element-size 50", folder.path());
+    CHECK(fine.exit_code == 0);
+    CHECK_THAT(fine.errors, !Contains("no side of a cuboid") && !Contains("away from the surface"));
+    const auto coarse =
+        tests::run_couture("mesh torus --stage volume --element-size 60", folder.path());
+    CHECK_THAT(coarse.errors,
+               Contains("away from the surface: smaller elements") || Contains("stay turned over"));
+}
+
+TEST_CASE("mesh: a run that fails leaves the stages before", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto result = tests::run_couture("mesh double_t --stage volume --out o", folder.path());
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.errors,
+               Contains("no template fits") && Contains("it came as far as stage pants"));
+    CHECK(std::filesystem::exists(folder.path() / "o/double_t_pants.vtp"));
+}
+
+TEST_CASE("mesh: numbers that no run could end with are refused at once", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto refused = [&](const std::string& options, const std::string& why) {
+        const auto result = tests::run_couture("mesh cube " + options, folder.path());
+        CAPTURE(options, result.errors);
+        CHECK(result.exit_code == 2);
+        CHECK_THAT(result.errors, Contains(why));
+    };
+    refused("--stage volume --element-size 1e-9", "at most 2e+06 are");
+    refused("--element-size 0", "must be positive");
+    refused("--degree 9", "not in range 1 to 8");
+    refused("--stage hexes --points 2000", "not in range 2 to 1000");
+    io::write_text(folder.path() / "file", "");
+    refused("--out file", "is not a folder");
+}
