@@ -75,6 +75,25 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
         io::quoted_list(names));
 }
 
+/// `couture rom ...`
+void add_rom_commands(CLI::App& app, Command& command) {
+    CLI::App* rom = app.add_subcommand("rom", "reduced models: learn a family of solutions once");
+    rom->require_subcommand(1);
+    const auto train = std::make_shared<RomTrainOptions>();
+    CLI::App* sub =
+        add_command(*rom, command, "train", "solve the members of a deck's design, make a model",
+                    [&command, train] { return run_rom_train(*train, command.common); });
+    sub->add_option("deck", train->deck, "the deck (TOML) with its section [rom]")->required();
+    sub->add_option("--set", train->overrides, "change a value of the deck: section.key=value")
+        ->allow_extra_args(false);
+    sub->add_option("--out", train->out, "folder of the results (default: out/<deck name>)");
+    sub->add_option("--jobs", train->n_jobs, "processes at once (default: as many as cores)")
+        ->check(CLI::Range(1, max_threads));
+    sub->add_option("--shard", train->shard,
+                    "I/N: make only the I-th of N equal parts of the snapshots, no model");
+    sub->add_flag("--retry", train->retry, "try samples again that were refused before");
+}
+
 void apply(const CommonOptions& common) {
     log::set_level(common.quiet     ? log::Level::warnings
                    : common.verbose ? log::Level::detail
@@ -184,6 +203,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     ".off, .ply, .vtp for surfaces")
         ->required();
     add_surface_options(sub, *from);
+
+    add_rom_commands(app, command);
 
     const auto verify = std::make_shared<VerifyOptions>();
     sub = add_command(app, command, "verify", "solve problems with known answers and compare",

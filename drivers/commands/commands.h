@@ -73,6 +73,20 @@ struct MeshOptions {
     bool resume = false;
 };
 
+/// What the commands that make snapshots take.
+struct RomTrainOptions {
+    std::filesystem::path deck;
+    std::vector<std::string> overrides;
+    /// Empty: out/<deck name> below the working folder.
+    std::filesystem::path out;
+    /// Processes; 0: as many as cores, each with one thread.
+    int n_jobs = 0;
+    /// "2/4": of four equal parts of the work the second, and no model; empty: all.
+    std::string shard;
+    /// Samples that were refused are tried again.
+    bool retry = false;
+};
+
 struct CompareOptions {
     std::filesystem::path first;
     std::filesystem::path second;
@@ -100,6 +114,7 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common);
 int run_info(const SurfaceInputOptions& options, const CommonOptions& common);
 int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common);
+int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);
