@@ -78,6 +78,23 @@ bool is_multiple(const MatrixX& a, double factor, const MatrixX& b) {
     return (a - factor * b).norm() <= rounding * std::max(a.norm(), (factor * b).norm());
 }
 
+// @throws InputError  if no reduced model can be made of a deck
+const io::RomSection& checked_section(const io::Deck& deck) {
+    const std::string name = deck.path.filename().string();
+    if (!deck.rom) {
+        throw InputError(
+            "{}: has no section [rom]; a reduced model needs one with its [[rom.parameter]]", name);
+    }
+    if (deck.problem.load_cases().size() > 1 || !deck.problem.combinations.empty()) {
+        throw InputError(
+            "{}: has {} load cases and {} combinations; a reduced model is of one: write a deck "
+            "for "
+            "each, or make the loads parameters",
+            name, deck.problem.load_cases().size(), deck.problem.combinations.size());
+    }
+    return *deck.rom;
+}
+
 }  // namespace
 
 std::string describe_point(const rom::ParameterSpace& space, const VectorX& point) {
@@ -113,22 +130,9 @@ RomSamples::RomSamples(const std::filesystem::path& path, const std::vector<std:
     : path_(path),
       overrides_(overrides),
       text_(io::read_text(path)),
-      deck_(io::parse_deck(text_, path, overrides)) {
-    const std::string name = path.filename().string();
-    if (!deck_.rom) {
-        throw InputError(
-            "{}: has no section [rom]; a reduced model needs one with its [[rom.parameter]]", name);
-    }
-    if (deck_.problem.load_cases().size() > 1 || !deck_.problem.combinations.empty()) {
-        throw InputError(
-            "{}: has {} load cases and {} combinations; a reduced model is of one: write a deck "
-            "for "
-            "each, or make the loads parameters",
-            name, deck_.problem.load_cases().size(), deck_.problem.combinations.size());
-    }
-    plan_ = make_rom_plan(*deck_.rom);
-    solver_ = iga::make_linear_solver(deck_.solver);
-}
+      deck_(io::parse_deck(text_, path, overrides)),
+      plan_(make_rom_plan(checked_section(deck_))),
+      solver_(iga::make_linear_solver(deck_.solver)) {}
 
 std::string RomSamples::job() const {
     const auto hash_of = [](const std::filesystem::path& file) {

@@ -1,8 +1,11 @@
 #include "drivers/rom_training.h"
 
+#include <limits>
+
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
+#include "iga/solve/static_system.h"
 
 namespace couture::drivers {
 
@@ -118,6 +121,43 @@ std::vector<RefusedSample> refused_samples(const RomPlan& plan, const io::Snapsh
         }
     }
     return refused;
+}
+
+rom::SnapshotSet read_snapshots(const RomSamples& samples, const iga::Space<3>& reference,
+                                const io::SnapshotStore& store) {
+    const RomPlan& plan = samples.plan();
+    const std::string signature = iga::signature(reference.geometry());
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    const long n_values = 3L * reference.n_dofs();
+    const int n_mechanics = plan.n_loads() * plan.n_materials();
+    rom::SnapshotSet set{plan.space,
+                         {},
+                         plan.space.centre(),
+                         reference.geometry(),
+                         plan.geometry_points,
+                         {},
+                         MatrixX::Constant(n_values, plan.n_geometries(), nothing),
+                         MatrixX::Constant(n_values, plan.n_snapshots(), nothing)};
+    for (const io::RomParameter& one : samples.section().parameters) {
+        const bool is_load = one.parameter.group == rom::ParameterGroup::load;
+        set.factor_power.push_back(!one.is_factored ? 0 : is_load ? 1 : -1);
+    }
+    if (!plan.load.empty()) set.mechanics_factors.push_back(plan.load_points);
+    if (!plan.material.empty()) set.mechanics_factors.push_back(plan.material_points);
+    for (int g = 0; g < plan.n_geometries(); ++g) {
+        if (!store.has_geometry(g)) continue;
+        set.control_points.col(g) = iga::flatten(store.geometry(g, signature));
+        for (int m = 0; m < plan.n_materials(); ++m) {
+            if (!store.has_solution(g, m)) continue;
+            const MatrixX solution = store.solution(g, m, signature);
+            for (int l = 0; l < plan.n_loads(); ++l) {
+                set.displacements.col(g * n_mechanics + l * plan.n_materials() + m) =
+                    solution.col(l);
+            }
+        }
+    }
+    rom::check(set);
+    return set;
 }
 
 void fill_store(RomSamples& samples, const iga::Space<3>& reference, io::SnapshotStore& store,

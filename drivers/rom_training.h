@@ -3,6 +3,7 @@
 #include "drivers/rom_samples.h"
 #include "iga/core/timer.h"
 #include "io/snapshot_store.h"
+#include "rom/snapshots.h"
 
 namespace couture::drivers {
 
@@ -44,6 +45,13 @@ class Progress {
 [[nodiscard]] StoreProgress progress_of(const RomPlan& plan, const io::SnapshotStore& store);
 [[nodiscard]] std::vector<RefusedSample> refused_samples(const RomPlan& plan,
                                                          const io::SnapshotStore& store);
+
+/// All that a store holds of the plan; what is refused or missing is NaN.
+///
+/// @throws InputError  if nothing is left, and as SnapshotStore
+[[nodiscard]] rom::SnapshotSet read_snapshots(const RomSamples& samples,
+                                              const iga::Space<3>& reference,
+                                              const io::SnapshotStore& store);
 
 /// Makes what a store lacks of the geometries `i_first`, `i_first + stride`, ...: those that can't
 /// be meshed or solved are noted there as refused, and the others go on.

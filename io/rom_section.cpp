@@ -1,5 +1,7 @@
 #include "io/rom_section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
