@@ -20,6 +20,8 @@ class RomSamples {
     RomSamples(const std::filesystem::path& path, const std::vector<std::string>& overrides);
 
     [[nodiscard]] const io::Deck& deck() const { return deck_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+    [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
     [[nodiscard]] const io::RomSection& section() const { return *deck_.rom; }
     [[nodiscard]] const RomPlan& plan() const { return plan_; }
     /// From now on other points than the deck's design.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -87,6 +88,30 @@ struct RomTrainOptions {
     bool retry = false;
 };
 
+struct RomEvalOptions {
+    std::filesystem::path model;
+    /// NAME=VALUE; parameters that are not named are in the middle of their ranges.
+    std::vector<std::string> settings;
+    /// Answers also far outside of the training box.
+    bool is_forced = false;
+    /// Projects the full equations onto the modes, too.
+    bool galerkin = false;
+    /// Solves in full, too, and compares.
+    bool solve = false;
+    /// Where fields are written; empty: nowhere, with `png` out/<model name>.
+    std::filesystem::path out;
+    bool png = false;
+};
+
+struct RomValidateOptions {
+    /// Its deck, folder and processes are those of the model's training.
+    RomTrainOptions campaign;
+    int n_points = 20;
+    std::uint64_t seed = 1;
+    bool galerkin = false;
+    bool png = false;
+};
+
 struct CompareOptions {
     std::filesystem::path first;
     std::filesystem::path second;
@@ -115,6 +140,8 @@ int run_info(const SurfaceInputOptions& options, const CommonOptions& common);
 int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common);
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
+int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
+int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);

@@ -1,16 +1,13 @@
 #include <fmt/core.h>
-#include <omp.h>
 
-#include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "drivers/commands/commands.h"
-#include "drivers/rom_training.h"
-#include "drivers/worker_processes.h"
+#include "drivers/rom_campaign.h"
+#include "drivers/rom_model.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
-#include "iga/core/parallel.h"
 #include "iga/core/timer.h"
-#include "io/atomic_file.h"
 
 namespace couture::drivers {
 
@@ -18,50 +15,72 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "2/4" as position and number of parts.
-std::pair<int, int> read_shard(const std::string& text) {
-    int part = 0;
-    int n_parts = 0;
-    const char* end = text.data() + text.size();
-    const auto first = std::from_chars(text.data(), end, part);
-    if (first.ec == std::errc() && first.ptr != end && *first.ptr == '/') {
-        const auto second = std::from_chars(first.ptr + 1, end, n_parts);
-        if (second.ec == std::errc() && second.ptr == end && part >= 1 && part <= n_parts) {
-            return {part, n_parts};
-        }
-    }
-    throw InputError("rom: --shard {}: must read I/N with 1 <= I <= N, for example 2/4", text);
+struct BasisSummary {
+    std::string name;
+    int n_modes = 0;
+    /// (1.14) of the modes that are kept.
+    double truncation = 0.0;
+    /// Of the field's length: 0.95 quantile of leave-one-out errors.
+    double leave_one_out = 0.0;
+};
+
+std::vector<BasisSummary> summarize(const rom::ReducedModel& model) {
+    std::vector<BasisSummary> result;
+    const rom::ReducedModelParts& parts = model.parts();
+    const auto add = [&](const std::string& name, const rom::FieldPart& part) {
+        const rom::FieldModel& field = parts.models[part.i_model];
+        result.push_back({name, field.n_modes(), field.basis().relative_error(field.n_modes()),
+                          part.size > 0.0 ? part.leave_one_out / part.size : part.leave_one_out});
+    };
+    add("geometry", parts.geometry);
+    add("displacement", parts.displacement);
+    return result;
 }
 
-// Fills the store by processes of this program, each with a part of the geometries.
-void fill_by_processes(const RomTrainOptions& options, const fs::path& folder, int n_jobs,
-                       int n_threads, const std::function<void()>& watch) {
-    std::vector<std::vector<std::string>> arguments;
-    for (int j = 1; j <= n_jobs; ++j) {
-        std::vector<std::string> one = {"rom",
-                                        "train",
-                                        options.deck.string(),
-                                        "--out",
-                                        folder.string(),
-                                        "--shard",
-                                        fmt::format("{}/{}", j, n_jobs),
-                                        "--threads",
-                                        std::to_string(n_threads),
-                                        "--quiet"};
-        for (const std::string& override : options.overrides) {
-            one.insert(one.end(), {"--set", override});
-        }
-        arguments.push_back(std::move(one));
+void print_json(const RomSamples& samples, const io::SnapshotStore& store,
+                const std::vector<BasisSummary>& bases, const rom::ReducedModel& model,
+                const fs::path& file, double seconds) {
+    const StoreProgress made = progress_of(samples.plan(), store);
+    nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                     {"status", made.n_refused > 0 ? "failed" : "done"},
+                                     {"title", samples.deck().title},
+                                     {"signature", iga::signature(model.parts().reference)},
+                                     {"unknowns", 3 * model.n_nodes()},
+                                     {"geometries", samples.plan().n_geometries()},
+                                     {"loads", samples.plan().n_loads()},
+                                     {"materials", samples.plan().n_materials()},
+                                     {"solutions", made.n_solutions}};
+    object["refused"] = nlohmann::ordered_json::array();
+    for (const RefusedSample& one : refused_samples(samples.plan(), store)) {
+        object["refused"].push_back({{"point", one.point}, {"reason", one.reason}});
     }
-    const std::vector<int> codes = run_processes(arguments, watch);
-    for (std::size_t j = 0; j < codes.size(); ++j) {
-        if (codes[j] != ExitCode::done) {
-            throw SolverError(
-                "rom: process {} of {} ended with exit code {}; what it made is kept: the same "
-                "command goes on from there",
-                j + 1, codes.size(), codes[j]);
-        }
+    object["bases"] = nlohmann::ordered_json::array();
+    for (const BasisSummary& one : bases) {
+        object["bases"].push_back({{"field", one.name},
+                                   {"modes", one.n_modes},
+                                   {"truncation", one.truncation},
+                                   {"leave_one_out", one.leave_one_out}});
     }
+    object["seconds"] = seconds;
+    object["warnings"] = log::warnings();
+    object["files"] = {file.string()};
+    fmt::print("{}\n", object.dump(2));
+}
+
+void print_table(const RomSamples& samples, const io::SnapshotStore& store,
+                 const std::vector<BasisSummary>& bases, const rom::ReducedModel& model,
+                 const fs::path& file, double seconds) {
+    const StoreProgress made = progress_of(samples.plan(), store);
+    fmt::print("{}\n", samples.deck().title);
+    fmt::print("  {} geometries x {} loads x {} materials, {} unknowns; refused {}\n",
+               samples.plan().n_geometries(), samples.plan().n_loads(),
+               samples.plan().n_materials(), 3 * model.n_nodes(), made.n_refused);
+    fmt::print("  {:<13} {:>6} {:>12} {:>14}\n", "basis", "modes", "truncation", "leave-one-out");
+    for (const BasisSummary& one : bases) {
+        fmt::print("  {:<13} {:>6} {:>12.2e} {:>14.2e}\n", one.name, one.n_modes, one.truncation,
+                   one.leave_one_out);
+    }
+    fmt::print("  {:.1f} s; wrote {}\n", seconds, file.string());
 }
 
 }  // namespace
@@ -69,44 +88,29 @@ void fill_by_processes(const RomTrainOptions& options, const fs::path& folder, i
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common) {
     const Timer timer;
     RomSamples samples(options.deck, options.overrides);
-    const std::string name = options.deck.stem().string();
-    const fs::path folder = options.out.empty() ? fs::path("out") / name : options.out;
-    io::require_writable(folder);
+    const fs::path folder = rom_folder(options);
     io::SnapshotStore store(folder / "snapshots", samples.job());
     if (options.retry) store.clear_failures();
-    // Results must not depend on how the work is split.
-    const int n_threads = common.n_threads > 0 ? common.n_threads : 1;
-    set_n_threads(n_threads);
+    use_rom_threads(common);
     const auto reference = samples.make_reference(store);
     samples.check_factored(reference);
-    const RomPlan& plan = samples.plan();
-    if (!options.shard.empty()) {
-        const auto [part, n_parts] = read_shard(options.shard);
-        fill_store(samples, *reference, store, part - 1, n_parts);
+    if (!run_campaign(options, common, samples, *reference, store, {"rom", "train"})) {
         return ExitCode::done;
     }
-    log::info(
-        fmt::format("rom: {} geometries x {} loads x {} materials = {} snapshots of {} "
-                    "unknowns",
-                    plan.n_geometries(), plan.n_loads(), plan.n_materials(), plan.n_snapshots(),
-                    3 * reference->n_dofs()));
-    const int n_cores = std::max(1, omp_get_num_procs() / n_threads);
-    const int n_missing = progress_of(plan, store).n_missing;
-    const int n_jobs = std::min({options.n_jobs > 0 ? options.n_jobs : n_cores, plan.n_geometries(),
-                                 std::max(n_missing, 1)});
-    if (n_jobs > 1) {
-        const Progress progress(plan, store);
-        fill_by_processes(options, folder, n_jobs, n_threads, [&] { progress.report(); });
-    } else {
-        fill_store(samples, *reference, store, 0, 1);
+    const rom::ReducedModel model(read_snapshots(samples, *reference, store),
+                                  model_options(samples.section()));
+    for (const rom::FieldModel& field : model.parts().models) {
+        if (const auto message = field.missing_modes()) log::warn("rom: " + *message);
     }
-    const StoreProgress done = progress_of(plan, store);
-    for (const RefusedSample& one : refused_samples(plan, store)) {
-        fmt::print(stderr, "refused: {}: {}\n", one.point, one.reason);
+    const fs::path file = folder / (options.deck.stem().string() + ".rom");
+    io::write_reduced_model(file, {model, samples.text(), model_provenance(samples)});
+    const auto bases = summarize(model);
+    if (common.json) {
+        print_json(samples, store, bases, model, file, timer.seconds());
+    } else if (!common.quiet) {
+        print_table(samples, store, bases, model, file, timer.seconds());
     }
-    fmt::print("{} solutions, {} refused, {:.1f} s\n", done.n_solutions, done.n_refused,
-               timer.seconds());
-    return done.n_refused > 0 ? ExitCode::run_failed : ExitCode::done;
+    return progress_of(samples.plan(), store).n_refused > 0 ? ExitCode::run_failed : ExitCode::done;
 }
 
 }  // namespace couture::drivers
