@@ -1,0 +1,194 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "iga/topology/field.h"
+#include "rom/field_model.h"
+#include "rom/snapshots.h"
+
+namespace couture::rom {
+
+enum class BasisKind {
+    separate,  ///< modes of control points minus the reference member's, and modes of displacements
+    stacked    ///< modes of both in one vector, each scaled by its root mean square
+};
+
+/// What modes are orthonormal in.
+enum class ModeProduct {
+    l2,        ///< the mass matrix of the reference member
+    euclidean  ///< the numbers at the nodes
+};
+
+struct ReducedModelOptions {
+    BasisKind basis = BasisKind::separate;
+    ModeProduct product = ModeProduct::l2;
+    /// Of each basis, as in PodOptions.
+    std::optional<int> n_modes = std::nullopt;
+    double tolerance = 0.0;
+    KrigingOptions kriging;
+};
+
+/// Factors on error estimates, from a comparison with full solutions.
+struct Calibration {
+    double geometry = 1.0;
+    double displacement = 1.0;
+    /// Relative error of the von Mises stress over the relative estimate of the displacement.
+    double von_mises = 1.0;
+    /// Full solutions compared with; 0: not calibrated.
+    int n_points = 0;
+};
+
+/// The smallest factor with which estimates are at least the errors at this part of the points.
+///
+/// @throws InputError  for no points, other numbers of both, or values that are not finite
+[[nodiscard]] double calibration_factor(const VectorX& errors, const VectorX& estimates,
+                                        double coverage = 0.9);
+
+/// Where one of the two fields lies in a field model, and how far the model can be trusted there.
+/// Lengths are root mean squares over the reference member in the sense of the modes' product:
+/// |v| = sqrt(v^T W v / (1^T W 1)).
+struct FieldPart {
+    /// Index of the field model, first component among those of each node, factor on its values.
+    int i_model = 0;
+    int first_component = 0;
+    double scale = 1.0;
+    /// Mean products of the modes' parts, scaled: n_modes x n_modes.
+    MatrixX gram;
+    /// Of what the modes leave of the snapshots, (1.14) as a length.
+    double truncation = 0.0;
+    /// 0.95 quantile of the lengths of leave-one-out errors at the points learned from.
+    double leave_one_out = 0.0;
+    /// 0.95 quantile of these lengths over those that kriging expects.
+    double leave_one_out_ratio = 1.0;
+    /// What relative errors refer to, besides the modes' part: length of the mean field
+    /// (displacement), or of the reference's positions about their centroid (geometry).
+    double size = 0.0;
+};
+
+/// All that a reduced model is made of, for files.
+struct ReducedModelParts {
+    ParameterSpace parameters;
+    std::vector<int> factor_power;
+    VectorX reference_point;
+    iga::MultiPatch<3> reference;
+    ReducedModelOptions options;
+    /// Geometry and displacement, or both stacked (6 values at each node).
+    std::vector<FieldModel> models;
+    FieldPart geometry;
+    FieldPart displacement;
+    Calibration calibration;
+};
+
+/// Values at a point. Fields as in SnapshotSet, units of the deck.
+struct Evaluation {
+    /// Of all parameters.
+    VectorX point;
+    /// Coefficients of geometry modes and displacement modes; one vector twice if stacked. The
+    /// displacement's are those at the reference values of the factored parameters.
+    VectorX geometry_coefficients;
+    VectorX displacement_coefficients;
+    /// Of the factored parameters: the displacement is this times that of its coefficients.
+    double factor = 1.0;
+    VectorX control_points;
+    VectorX displacement;
+    /// By how much of its range the worst parameter is outside of it; 0 inside.
+    double distance_outside = 0.0;
+};
+
+/// Several points at once: a column for each.
+struct EvaluationBatch {
+    MatrixX control_points;
+    MatrixX displacements;
+};
+
+/// Derivatives by the parameters in units of the deck: 3 n_nodes x n_parameters.
+struct EvaluationGradient {
+    MatrixX control_points;
+    MatrixX displacement;
+};
+
+/// Expected error of a field at a point; lengths as in FieldPart.
+struct ErrorEstimate {
+    /// Of what the modes can't show.
+    double truncation = 0.0;
+    /// Standard error of kriging, from the variances of the coefficients.
+    double kriging = 0.0;
+    /// Of the points learned from, each predicted from the others.
+    double leave_one_out = 0.0;
+    /// calibration * sqrt(truncation^2 + (leave_one_out_ratio * kriging)^2)
+    double total = 0.0;
+    /// total over the field's length.
+    double relative = 0.0;
+};
+
+struct ErrorEstimates {
+    ErrorEstimate geometry;
+    ErrorEstimate displacement;
+    /// Relative, from that of the displacement.
+    double von_mises = 0.0;
+};
+
+/// Geometry and displacement of a part as functions of parameters, learned from full solutions.
+///
+/// Source: [Maquart19] Sec. 7.2. Differs: by default geometry and displacement have modes of their
+/// own, and intensities and moduli that the displacement is proportional to are factored exactly.
+class ReducedModel {
+  public:
+    /// @throws InputError  as `check` of the snapshots, make_pod_basis and Kriging
+    ReducedModel(const SnapshotSet& snapshots, const ReducedModelOptions& options);
+    /// @throws InputError  for parts that do not fit together
+    explicit ReducedModel(ReducedModelParts parts);
+
+    [[nodiscard]] const ReducedModelParts& parts() const { return parts_; }
+    [[nodiscard]] const ParameterSpace& parameters() const { return parts_.parameters; }
+    [[nodiscard]] int n_nodes() const { return space_->n_dofs(); }
+    /// Of the reference member: the functions that all members share.
+    [[nodiscard]] const iga::SpacePtr<3>& space() const { return space_; }
+    /// Factors of the error estimates, from validation.
+    void set_calibration(const Calibration& calibration) { parts_.calibration = calibration; }
+
+    /// @param point  a value for each parameter, units of the deck
+    /// @throws InputError  for another number of values, or one that is not finite
+    [[nodiscard]] Evaluation evaluate(const VectorX& point) const;
+    /// @param points  n_points x n_parameters
+    [[nodiscard]] EvaluationBatch evaluate_batch(const MatrixX& points) const;
+    [[nodiscard]] EvaluationGradient gradient(const VectorX& point) const;
+    [[nodiscard]] ErrorEstimates errors(const VectorX& point) const;
+    /// Standard errors of the coefficients of `evaluate`.
+    [[nodiscard]] VectorX geometry_standard_errors(const VectorX& point) const;
+    [[nodiscard]] VectorX displacement_standard_errors(const VectorX& point) const;
+    /// Standard error of each number of the displacement, by kriging alone.
+    [[nodiscard]] VectorX displacement_error_field(const VectorX& point) const;
+
+    /// Modes of the displacement, 3 n_nodes x n_modes, and its mean: u = factor (mean + modes a).
+    [[nodiscard]] MatrixX displacement_modes() const;
+    [[nodiscard]] VectorX displacement_mean() const;
+
+    /// The predicted geometry, and the predicted displacement on it.
+    [[nodiscard]] iga::MultiPatch<3> member(const Evaluation& evaluation) const;
+    [[nodiscard]] iga::Field<3> displacement_field(const Evaluation& evaluation) const;
+
+  private:
+    [[nodiscard]] const FieldModel& model_of(const FieldPart& part) const {
+        return parts_.models[part.i_model];
+    }
+    /// Inputs of a field model at a unit point.
+    [[nodiscard]] VectorX inputs(int i_model, const VectorX& unit_point) const;
+    /// Product of the factored parameters' powers over that at the reference.
+    [[nodiscard]] double factor(const VectorX& point) const;
+    /// Rows of a field model that a part has, scaled.
+    [[nodiscard]] MatrixX part_of(const FieldPart& part, const MatrixX& fields) const;
+    /// d field / d parameters of a part without the factor.
+    [[nodiscard]] MatrixX part_gradient(const FieldPart& part, const VectorX& unit_point) const;
+    [[nodiscard]] ErrorEstimate estimate(const FieldPart& part, const VectorX& unit_point) const;
+    void connect();
+
+    ReducedModelParts parts_;
+    iga::SpacePtr<3> space_;
+    /// For each field model the parameters that are its inputs, in their order.
+    std::vector<std::vector<int>> input_parameters_;
+};
+
+}  // namespace couture::rom
