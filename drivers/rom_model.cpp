@@ -77,7 +77,8 @@ TrainedModel::TrainedModel(const std::filesystem::path& path)
 
 std::filesystem::path TrainedModel::deck_path() const {
     const auto found = file_.provenance.find(deck_key);
-    return found == file_.provenance.end() ? std::filesystem::path() : found->second;
+    if (found == file_.provenance.end()) return {};
+    return found->second;
 }
 
 std::vector<std::string> TrainedModel::overrides() const {
