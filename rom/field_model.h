@@ -9,8 +9,8 @@
 namespace couture::rom {
 
 struct FieldModelOptions {
-    PodOptions pod;
-    KrigingOptions kriging;
+    PodOptions pod = {};
+    KrigingOptions kriging = {};
 };
 
 /// A field over parameters: mean + modes x coefficients, each coefficient by kriging.

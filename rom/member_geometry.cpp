@@ -22,9 +22,9 @@ void require_own_functions(const iga::Space<3>& reference) {
 void check_weights(const VectorX& reference, const VectorX& member, int patch) {
     if (reference.size() != member.size()) {
         throw InputError(
-            "member: patch {} is {}rational, that of the reference is {}; both must "
-            "have the same weights",
-            patch, member.size() > 0 ? "" : "not ", reference.size() > 0 ? "" : "not");
+            "member: patch {} {} rational, that of the reference {}; both must have the same "
+            "weights",
+            patch, member.size() > 0 ? "is" : "is not", reference.size() > 0 ? "is" : "is not");
     }
     for (Eigen::Index i = 0; i < reference.size(); ++i) {
         if (std::abs(member[i] - reference[i]) > weight_tolerance * reference[i]) {

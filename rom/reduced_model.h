@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "iga/topology/field.h"
-#include "rom/field_model.h"
+#include "rom/field_part.h"
 #include "rom/snapshots.h"
 
 namespace couture::rom {
@@ -27,45 +27,13 @@ struct ReducedModelOptions {
     /// Of each basis, as in PodOptions.
     std::optional<int> n_modes = std::nullopt;
     double tolerance = 0.0;
-    KrigingOptions kriging;
+    KrigingOptions kriging = {};
 };
 
-/// Factors on error estimates, from a comparison with full solutions.
-struct Calibration {
-    double geometry = 1.0;
-    double displacement = 1.0;
-    /// Relative error of the von Mises stress over the relative estimate of the displacement.
-    double von_mises = 1.0;
-    /// Full solutions compared with; 0: not calibrated.
-    int n_points = 0;
-};
-
-/// The smallest factor with which estimates are at least the errors at this part of the points.
+/// The product of displacements and of control points of a family.
 ///
-/// @throws InputError  for no points, other numbers of both, or values that are not finite
-[[nodiscard]] double calibration_factor(const VectorX& errors, const VectorX& estimates,
-                                        double coverage = 0.9);
-
-/// Where one of the two fields lies in a field model, and how far the model can be trusted there.
-/// Lengths are root mean squares over the reference member in the sense of the modes' product:
-/// |v| = sqrt(v^T W v / (1^T W 1)).
-struct FieldPart {
-    /// Index of the field model, first component among those of each node, factor on its values.
-    int i_model = 0;
-    int first_component = 0;
-    double scale = 1.0;
-    /// Mean products of the modes' parts, scaled: n_modes x n_modes.
-    MatrixX gram;
-    /// Of what the modes leave of the snapshots, (1.14) as a length.
-    double truncation = 0.0;
-    /// 0.95 quantile of the lengths of leave-one-out errors at the points learned from.
-    double leave_one_out = 0.0;
-    /// 0.95 quantile of these lengths over those that kriging expects.
-    double leave_one_out_ratio = 1.0;
-    /// What relative errors refer to, besides the modes' part: length of the mean field
-    /// (displacement), or of the reference's positions about their centroid (geometry).
-    double size = 0.0;
-};
+/// @param reference  the reference member's own functions
+[[nodiscard]] InnerProduct mode_product(const iga::Space<3>& reference, ModeProduct product);
 
 /// All that a reduced model is made of, for files.
 struct ReducedModelParts {
@@ -109,27 +77,6 @@ struct EvaluationGradient {
     MatrixX displacement;
 };
 
-/// Expected error of a field at a point; lengths as in FieldPart.
-struct ErrorEstimate {
-    /// Of what the modes can't show.
-    double truncation = 0.0;
-    /// Standard error of kriging, from the variances of the coefficients.
-    double kriging = 0.0;
-    /// Of the points learned from, each predicted from the others.
-    double leave_one_out = 0.0;
-    /// calibration * sqrt(truncation^2 + (leave_one_out_ratio * kriging)^2)
-    double total = 0.0;
-    /// total over the field's length.
-    double relative = 0.0;
-};
-
-struct ErrorEstimates {
-    ErrorEstimate geometry;
-    ErrorEstimate displacement;
-    /// Relative, from that of the displacement.
-    double von_mises = 0.0;
-};
-
 /// Geometry and displacement of a part as functions of parameters, learned from full solutions.
 ///
 /// Source: [Maquart19] Sec. 7.2. Differs: by default geometry and displacement have modes of their
@@ -162,7 +109,10 @@ class ReducedModel {
     /// Standard error of each number of the displacement, by kriging alone.
     [[nodiscard]] VectorX displacement_error_field(const VectorX& point) const;
 
-    /// Modes of the displacement, 3 n_nodes x n_modes, and its mean: u = factor (mean + modes a).
+    /// Modes of the control points, 3 n_nodes x n_modes, and their mean: x = mean + modes a.
+    [[nodiscard]] MatrixX geometry_modes() const;
+    [[nodiscard]] VectorX geometry_mean() const;
+    /// Those of the displacement: u = factor (mean + modes a).
     [[nodiscard]] MatrixX displacement_modes() const;
     [[nodiscard]] VectorX displacement_mean() const;
 
@@ -171,19 +121,22 @@ class ReducedModel {
     [[nodiscard]] iga::Field<3> displacement_field(const Evaluation& evaluation) const;
 
   private:
+    [[nodiscard]] bool is_stacked() const { return parts_.options.basis == BasisKind::stacked; }
     [[nodiscard]] const FieldModel& model_of(const FieldPart& part) const {
         return parts_.models[part.i_model];
     }
+    /// The point in the unit cube. @throws InputError  as `evaluate`
+    [[nodiscard]] VectorX unit_point(const VectorX& point) const;
     /// Inputs of a field model at a unit point.
     [[nodiscard]] VectorX inputs(int i_model, const VectorX& unit_point) const;
     /// Product of the factored parameters' powers over that at the reference.
     [[nodiscard]] double factor(const VectorX& point) const;
-    /// Rows of a field model that a part has, scaled.
-    [[nodiscard]] MatrixX part_of(const FieldPart& part, const MatrixX& fields) const;
-    /// d field / d parameters of a part without the factor.
+    [[nodiscard]] VectorX coefficients(const FieldPart& part, const VectorX& unit_point) const;
+    [[nodiscard]] VectorX variances(const FieldPart& part, const VectorX& unit_point) const;
+    /// Rows of fields of a model that a part has, scaled.
+    [[nodiscard]] MatrixX part_of(const FieldPart& part, MatrixX fields) const;
+    /// d field / d parameters of a part, at the reference values of the factored ones.
     [[nodiscard]] MatrixX part_gradient(const FieldPart& part, const VectorX& unit_point) const;
-    [[nodiscard]] ErrorEstimate estimate(const FieldPart& part, const VectorX& unit_point) const;
-    void connect();
 
     ReducedModelParts parts_;
     iga::SpacePtr<3> space_;
