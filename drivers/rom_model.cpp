@@ -43,7 +43,7 @@ double read_value(const rom::Parameter& parameter, const std::string& text) {
         const io::Quantity given = io::parse_unit(unit);
         const io::Quantity wanted = io::parse_unit(parameter.unit);
         if (!(given.dimension == wanted.dimension)) {
-            fail("is a " + given.dimension.name() + ", no " + wanted.dimension.name());
+            fail("is " + given.dimension.name() + ", not " + wanted.dimension.name());
         }
         value *= given.value / wanted.value;
     }

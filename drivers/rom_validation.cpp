@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "drivers/result_files.h"
+#include "drivers/rom_json.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/solve/static_system.h"
@@ -75,12 +76,6 @@ rom::Calibration calibrate(const TrainedModel& trained, const Validation& valida
 
 nlohmann::ordered_json to_json(const Statistics& one) {
     return {{"mean", one.mean}, {"median", one.median}, {"worst", one.worst}};
-}
-
-nlohmann::ordered_json to_json(const PredictionErrors& one) {
-    return {{"displacement", one.displacement}, {"displacement_max", one.displacement_max},
-            {"geometry", one.geometry},         {"geometry_max", one.geometry_max},
-            {"von_mises", one.von_mises},       {"von_mises_max", one.von_mises_max}};
 }
 
 struct Measure {
@@ -207,9 +202,7 @@ std::string validation_json(const TrainedModel& trained, const Validation& valid
     const rom::ParameterSpace& space = trained.model().parameters();
     for (const ValidationPoint& one : validation.points) {
         nlohmann::ordered_json sample;
-        for (int i = 0; i < space.size(); ++i) {
-            sample["parameters"][space.parameters()[i].name] = one.point[i];
-        }
+        sample["parameters"] = parameters_json(space, one.point);
         sample["errors"] = to_json(one.kriging);
         if (one.galerkin) sample["galerkin_errors"] = to_json(*one.galerkin);
         sample["estimate"] = one.estimate;
@@ -308,7 +301,7 @@ std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
     const auto write = [&](const char* name, const VectorX& control_points,
                            const VectorX& displacement) {
         deck.path = std::filesystem::path(stem.filename().string() + "_worst_" + name + ".toml");
-        deck.title = fmt::format("{}: {}", name, describe_point(model.parameters(), point));
+        deck.title = name;
         const auto space = std::make_shared<const iga::Space<3>>(
             with_control_points(*model.space(), iga::unflatten(control_points, 3)));
         iga::LinearStaticResult<3> result;

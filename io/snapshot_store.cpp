@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,14 @@ std::string solution_name(int i_geometry, int i_material) {
     return fmt::format("solution_{:04}_{:02}", i_geometry, i_material);
 }
 
+bool has_snapshots(const fs::path& folder) {
+    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                       [](const auto& entry) {
+                           const std::string name = entry.path().filename().string();
+                           return name.starts_with("geometry_") || name.starts_with("solution_");
+                       });
+}
+
 // The first entry in which two jobs differ.
 std::string difference(const std::string& mine, const std::string& theirs) {
     const auto a = nlohmann::json::parse(mine, nullptr, false);
@@ -44,17 +53,18 @@ std::string difference(const std::string& mine, const std::string& theirs) {
 SnapshotStore::SnapshotStore(fs::path folder, std::string job)
     : folder_(std::move(folder)), job_(std::move(job)), job_hash_(text_hash(job_)) {
     const fs::path plan = file(plan_name);
-    if (!fs::exists(plan)) {
-        write_text(plan, job_);
-        return;
-    }
-    const std::string found = read_text(plan);
-    if (found != job_) {
+    const std::string found = fs::exists(plan) ? read_text(plan) : std::string();
+    if (found == job_) return;
+    if (!found.empty() && has_snapshots(folder_)) {
         throw InputError(
             "{}: the snapshots there are of another job: {}; take another folder (--out), or "
             "remove {} if they are of no use any more",
             plan.string(), difference(job_, found), folder_.string());
     }
+    // A plan of which no snapshot was made stands in nobody's way.
+    fs::remove(reference_file());
+    fs::remove(record_file());
+    write_text(plan, job_);
 }
 
 fs::path SnapshotStore::file(const std::string& name) const { return folder_ / name; }

@@ -6,6 +6,7 @@
 #include "drivers/deck_check.h"
 #include "drivers/result_files.h"
 #include "drivers/rom_error_measures.h"
+#include "drivers/rom_json.h"
 #include "drivers/rom_model.h"
 #include "iga/assembly/assembler.h"
 #include "iga/core/error.h"
@@ -102,18 +103,10 @@ nlohmann::ordered_json to_json(const rom::ErrorEstimate& one) {
             {"leave_one_out", one.leave_one_out}};
 }
 
-nlohmann::ordered_json to_json(const PredictionErrors& one) {
-    return {{"displacement", one.displacement}, {"displacement_max", one.displacement_max},
-            {"geometry", one.geometry},         {"geometry_max", one.geometry_max},
-            {"von_mises", one.von_mises},       {"von_mises_max", one.von_mises_max}};
-}
-
 void print_json(const TrainedModel& trained, const Answer& answer) {
     const rom::ParameterSpace& space = trained.model().parameters();
     nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION}, {"status", "done"}};
-    for (int i = 0; i < space.size(); ++i) {
-        object["parameters"][space.parameters()[i].name] = answer.evaluation.point[i];
-    }
+    object["parameters"] = parameters_json(space, answer.evaluation.point);
     object["displacement_max"] = answer.extremes.displacement;
     object["von_mises_max"] = answer.extremes.von_mises;
     object["von_mises_at"] = {answer.extremes.von_mises_at[0], answer.extremes.von_mises_at[1],
