@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "iga/core/parallel.h"
 #include "iga/solve/linear_static.h"
 #include "iga/solve/static_system.h"
 #include "iga/spline/shapes.h"
@@ -80,6 +81,9 @@ struct BoxFamily {
         set.control_points.resize(3 * space.n_dofs(), n * n);
         set.displacements.resize(3 * space.n_dofs(), n * n * n * n);
         const MatrixX points = set.design().points();
+        // Systems are too small to be shared between threads.
+        const int n_threads_before = n_threads();
+        set_n_threads(1);
         for (int i = 0; i < points.rows(); ++i) {
             VectorX unit = set.parameters.to_unit(set.reference_point);
             unit[width] = points(i, 0);
@@ -90,6 +94,7 @@ struct BoxFamily {
             set.control_points.col(i / (n * n)) = rom::to_field(space, geometry(point));
             set.displacements.col(i) = solve(point);
         }
+        set_n_threads(n_threads_before);
         return set;
     }
 

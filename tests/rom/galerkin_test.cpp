@@ -51,24 +51,25 @@ TEST_CASE("solve_galerkin: better than kriging between the snapshots, and says h
     CHECK(there.relative_residual > 0.0);
     CHECK(there.relative_residual < there.relative_residual_of_kriging);
     CHECK(there.relative_change > 0.0);
-    // The energy of the best approximation is below that of the solution: half the work of f.
-    const iga::Space<3> space(BoxFamily::geometry(somewhere()));
-    const auto result = iga::solve_linear_static<3>(
-        std::make_shared<const iga::Space<3>>(BoxFamily::geometry(somewhere())),
-        BoxFamily::problem(somewhere()));
-    CHECK(there.energy < result.cases[0].energy * (1.0 + 1e-6));
-    CHECK(there.energy > 0.99 * result.cases[0].energy);
+    if (options.basis == BasisKind::separate) {
+        // The geometry is exact: less energy is stored in a space of fewer functions.
+        const auto result = iga::solve_linear_static<3>(
+            std::make_shared<const iga::Space<3>>(BoxFamily::geometry(somewhere())),
+            BoxFamily::problem(somewhere()));
+        CHECK(there.energy < result.cases[0].energy * (1.0 + 1e-9));
+        CHECK(there.energy > 0.99 * result.cases[0].energy);
+    }
 }
 
-TEST_CASE("solve_galerkin: more modes, smaller energy error", "[rom]") {
-    double before = 1.0;
+TEST_CASE("solve_galerkin: more modes, more of the energy", "[rom]") {
+    double before = 0.0;
     for (const int n_modes : {1, 4, 12, 40}) {
         ReducedModelOptions options = linear_trend;
         options.n_modes = n_modes;
         const GalerkinSolution there = solve(ReducedModel(family(), options), somewhere());
-        CHECK(there.n_modes <= n_modes);
-        CHECK(there.relative_residual < before);
-        before = there.relative_residual;
+        CHECK(there.n_modes == n_modes);
+        CHECK(there.energy > before);
+        before = there.energy;
     }
 }
 
