@@ -1,0 +1,127 @@
+#include "rom/field_model.h"
+
+#include "iga/core/error.h"
+#include "rom/snapshots.h"
+
+namespace couture::rom {
+
+namespace {
+
+/// Position in each factor of a point of the design.
+std::vector<int> positions_of(int i_point, const std::vector<int>& sizes) {
+    std::vector<int> positions(sizes.size());
+    for (std::size_t g = sizes.size(); g-- > 0;) {
+        positions[g] = i_point % sizes[g];
+        i_point /= sizes[g];
+    }
+    return positions;
+}
+
+}  // namespace
+
+TensorDesign accepted_design(const TensorDesign& design, const std::vector<int>& accepted) {
+    const std::vector<int> sizes = design.sizes();
+    std::vector<std::vector<char>> is_used;
+    for (const int size : sizes) {
+        is_used.emplace_back(size, 0);
+    }
+    for (const int i : accepted) {
+        const std::vector<int> positions = positions_of(i, sizes);
+        for (std::size_t g = 0; g < sizes.size(); ++g) {
+            is_used[g][positions[g]] = 1;
+        }
+    }
+    TensorDesign left;
+    for (std::size_t g = 0; g < sizes.size(); ++g) {
+        std::vector<int> rows;
+        for (int i = 0; i < sizes[g]; ++i) {
+            if (is_used[g][i] != 0) {
+                rows.push_back(i);
+            }
+        }
+        left.factors.emplace_back(design.factors[g](rows, Eigen::all));
+    }
+    if (left.n_points() == static_cast<int>(accepted.size())) {
+        return left;
+    }
+    return {{design.points()(accepted, Eigen::all)}};
+}
+
+namespace {
+
+FieldModel constant_model(const VectorX& field, std::optional<int> n_modes_asked,
+                          const KrigingOptions& kriging) {
+    PodBasis basis;
+    basis.modes = MatrixX(field.size(), 0);
+    return {field, basis, n_modes_asked, CoefficientModel({}, MatrixX(1, 0), kriging)};
+}
+
+FieldModel learned_model(const TensorDesign& design, const MatrixX& fields, VectorX mean,
+                         const InnerProduct& product, const FieldModelOptions& options) {
+    if (fields.cols() != design.n_points() || fields.rows() != mean.size()) {
+        throw InputError(
+            "FieldModel: {} fields of {} values for a design of {} points and a mean of {} values; "
+            "there must be one field for each point, as long as the mean",
+            fields.cols(), fields.rows(), design.n_points(), mean.size());
+    }
+    const std::vector<int> accepted = accepted_columns(fields);
+    if (accepted.empty()) {
+        throw InputError("FieldModel: all {} fields were refused; nothing to learn from",
+                         fields.cols());
+    }
+    const MatrixX snapshots = fields(Eigen::all, accepted).colwise() - mean;
+    if (design.n_parameters() == 0) {
+        return constant_model(mean + snapshots.col(0), options.pod.n_modes, options.kriging);
+    }
+    PodBasis basis = make_pod_basis(snapshots, product, options.pod);
+    MatrixX values = project(basis, product, snapshots).transpose();
+    CoefficientModel coefficients(accepted_design(design, accepted), std::move(values),
+                                  options.kriging);
+    return {std::move(mean), std::move(basis), options.pod.n_modes, std::move(coefficients)};
+}
+
+}  // namespace
+
+FieldModel::FieldModel(const TensorDesign& design, const MatrixX& fields, VectorX mean,
+                       const InnerProduct& product, const FieldModelOptions& options)
+    : FieldModel(learned_model(design, fields, std::move(mean), product, options)) {}
+
+FieldModel::FieldModel(VectorX mean, PodBasis basis, std::optional<int> n_modes_asked,
+                       CoefficientModel coefficients)
+    : mean_(std::move(mean)),
+      basis_(std::move(basis)),
+      n_modes_asked_(n_modes_asked),
+      coefficients_(std::move(coefficients)) {
+    if (basis_.modes.rows() != mean_.size() ||
+        basis_.modes.cols() != coefficients_.n_coefficients()) {
+        throw InputError("FieldModel: modes are {} x {}; expected {} x {}, values by coefficients",
+                         basis_.modes.rows(), basis_.modes.cols(), mean_.size(),
+                         coefficients_.n_coefficients());
+    }
+}
+
+std::optional<std::string> FieldModel::missing_modes() const {
+    if (!n_modes_asked_ || n_modes() >= *n_modes_asked_) {
+        return std::nullopt;
+    }
+    const Eigen::Index n_fields = coefficients_.training().rows();
+    if (n_modes() == basis_.rank) {
+        return fmt::format("{} modes asked for, {} are there: the numerical rank of {} snapshots",
+                           *n_modes_asked_, n_modes(), n_fields);
+    }
+    return fmt::format("{} modes asked for, {} suffice for the tolerance", *n_modes_asked_,
+                       n_modes());
+}
+
+MatrixX FieldModel::fields(const MatrixX& coefficients) const {
+    MatrixX result(mean_.size(), coefficients.cols());
+    result.colwise() = mean_;
+    result.noalias() += basis_.modes * coefficients;
+    return result;
+}
+
+VectorX FieldModel::standard_errors(const VectorX& variances) const {
+    return (basis_.modes.cwiseAbs2() * variances).cwiseSqrt();
+}
+
+}  // namespace couture::rom
