@@ -39,6 +39,8 @@ class FieldModel {
     /// Says so if there are fewer modes than were asked for.
     [[nodiscard]] std::optional<std::string> missing_modes() const;
 
+    /// The field of coefficients, one pass through the modes.
+    [[nodiscard]] VectorX field(const VectorX& coefficients) const;
     /// Fields of coefficients: n_values x n_fields. @param coefficients  n_modes x n_fields
     [[nodiscard]] MatrixX fields(const MatrixX& coefficients) const;
     /// Standard errors of the values of a field from the variances of its coefficients.

@@ -108,6 +108,17 @@ TEST_CASE("FieldModel: fields that do not vary", "[rom]") {
           1e-12);
 }
 
+TEST_CASE("FieldModel: one field is as several", "[rom]") {
+    const MatrixX fields = random_design(12, n_values, 9);
+    for (const int n_modes : {1, 4, 7, 11}) {
+        const FieldModel model(grid(), fields, mean, InnerProduct(3),
+                               {.pod = {.n_modes = n_modes}});
+        const MatrixX coefficients = random_design(2, n_modes, 4);
+        const MatrixX both = model.fields(coefficients);
+        CHECK((model.field(coefficients.col(1)) - both.col(1)).norm() < 1e-13 * both.norm());
+    }
+}
+
 TEST_CASE("FieldModel: standard errors of values", "[rom]") {
     const FieldModel model(grid(), bilinear_fields(grid().points()), mean, InnerProduct(3));
     const VectorX variances = Vector3(4.0, 1.0, 0.25);
