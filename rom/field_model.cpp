@@ -1,6 +1,9 @@
 #include "rom/field_model.h"
 
+#include <algorithm>
+
 #include "iga/core/error.h"
+#include "iga/core/log.h"
 #include "rom/snapshots.h"
 
 namespace couture::rom {
@@ -56,6 +59,52 @@ FieldModel constant_model(const VectorX& field, std::optional<int> n_modes_asked
     return {field, basis, n_modes_asked, CoefficientModel({}, MatrixX(1, 0), kriging)};
 }
 
+/// Positions among the accepted points of those whose point of the first factor was refused
+/// nothing: what is left is a tensor product.
+std::vector<int> complete_points(const TensorDesign& design, const std::vector<int>& accepted) {
+    const int n_first = static_cast<int>(design.factors[0].rows());
+    const int n_each = design.n_points() / n_first;
+    std::vector<int> n_accepted(n_first, 0);
+    for (const int i : accepted) {
+        ++n_accepted[i / n_each];
+    }
+    std::vector<int> complete;
+    for (std::size_t k = 0; k < accepted.size(); ++k) {
+        if (n_accepted[accepted[k] / n_each] == n_each) {
+            complete.push_back(static_cast<int>(k));
+        }
+    }
+    return complete;
+}
+
+/// Kriging of coefficients at the accepted points. Where a design has holes its likelihood costs a
+/// hundred times more: lengths and nugget are then those of the complete part of it, if that is
+/// most of it.
+CoefficientModel learned_coefficients(const TensorDesign& design, const std::vector<int>& accepted,
+                                      const MatrixX& values, const KrigingOptions& options) {
+    const TensorDesign left = accepted_design(design, accepted);
+    const bool has_holes = left.factors.size() < design.factors.size();
+    if (has_holes) {
+        const std::vector<int> complete = complete_points(design, accepted);
+        const int n_least =
+            std::max(static_cast<int>(accepted.size()) / 2, 2 + left.n_parameters());
+        if (static_cast<int>(complete.size()) >= n_least) {
+            std::vector<int> points;
+            for (const int k : complete) {
+                points.push_back(accepted[k]);
+            }
+            const CoefficientModel part(accepted_design(design, points),
+                                        values(complete, Eigen::all), options);
+            try {
+                return {left, values, options, part.parameters()};
+            } catch (const InputError& error) {
+                log::detail(fmt::format("{}; another search of lengths", error.what()));
+            }
+        }
+    }
+    return {left, values, options};
+}
+
 FieldModel learned_model(const TensorDesign& design, const MatrixX& fields, VectorX mean,
                          const InnerProduct& product, const FieldModelOptions& options) {
     if (fields.cols() != design.n_points() || fields.rows() != mean.size()) {
@@ -74,9 +123,8 @@ FieldModel learned_model(const TensorDesign& design, const MatrixX& fields, Vect
         return constant_model(mean + snapshots.col(0), options.pod.n_modes, options.kriging);
     }
     PodBasis basis = make_pod_basis(snapshots, product, options.pod);
-    MatrixX values = project(basis, product, snapshots).transpose();
-    CoefficientModel coefficients(accepted_design(design, accepted), std::move(values),
-                                  options.kriging);
+    const MatrixX values = project(basis, product, snapshots).transpose();
+    CoefficientModel coefficients = learned_coefficients(design, accepted, values, options.kriging);
     return {std::move(mean), std::move(basis), options.pod.n_modes, std::move(coefficients)};
 }
 
