@@ -77,29 +77,46 @@ std::vector<int> complete_points(const TensorDesign& design, const std::vector<i
     return complete;
 }
 
+/// Kriging with these parameters, nuggets raised to where K of no coefficient is singular to
+/// rounding (a product of small matrices bears less than one large one); nothing if that would be
+/// more than noise.
+std::optional<CoefficientModel> with_parameters(const TensorDesign& design, const MatrixX& values,
+                                                const KrigingOptions& options,
+                                                std::vector<KrigingParameters> parameters) {
+    constexpr double largest_nugget = 1e-5;
+    for (double least = 1e-10; least <= largest_nugget; least *= 10.0) {
+        for (KrigingParameters& one : parameters) {
+            one.nugget = options.nugget.value_or(std::max(one.nugget, least));
+        }
+        try {
+            return CoefficientModel(design, values, options, parameters);
+        } catch (const InputError& error) {
+            log::detail(error.what());
+            if (options.nugget) {
+                break;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
 /// Kriging of coefficients at the accepted points. Where a design has holes its likelihood costs a
 /// hundred times more: lengths and nugget are then those of the complete part of it, if that is
 /// most of it.
 CoefficientModel learned_coefficients(const TensorDesign& design, const std::vector<int>& accepted,
                                       const MatrixX& values, const KrigingOptions& options) {
     const TensorDesign left = accepted_design(design, accepted);
-    const bool has_holes = left.factors.size() < design.factors.size();
-    if (has_holes) {
-        const std::vector<int> complete = complete_points(design, accepted);
-        const int n_least =
-            std::max(static_cast<int>(accepted.size()) / 2, 2 + left.n_parameters());
-        if (static_cast<int>(complete.size()) >= n_least) {
-            std::vector<int> points;
-            for (const int k : complete) {
-                points.push_back(accepted[k]);
-            }
-            const CoefficientModel part(accepted_design(design, points),
-                                        values(complete, Eigen::all), options);
-            try {
-                return {left, values, options, part.parameters()};
-            } catch (const InputError& error) {
-                log::detail(fmt::format("{}; another search of lengths", error.what()));
-            }
+    const std::vector<int> complete = complete_points(design, accepted);
+    const std::size_t n_least = std::max<std::size_t>(accepted.size() / 2, left.n_parameters() + 2);
+    if (left.factors.size() < design.factors.size() && complete.size() >= n_least) {
+        std::vector<int> points;
+        for (const int k : complete) {
+            points.push_back(accepted[k]);
+        }
+        const CoefficientModel part(accepted_design(design, points), values(complete, Eigen::all),
+                                    options);
+        if (auto model = with_parameters(left, values, options, part.parameters())) {
+            return std::move(*model);
         }
     }
     return {left, values, options};

@@ -20,8 +20,8 @@ class FieldModel {
   public:
     /// Learns from fields at the points of a design. Refused fields leave the design: it stays a
     /// tensor product if they are all those of some points of its factors, else it becomes one
-    /// factor; kriging's lengths and nugget are then those of the points of the first factor
-    /// without refused fields, if these are at least half of the points. Without inputs (no
+    /// factor; kriging's lengths are then those of the points of the first factor without
+    /// refused fields, if these are at least half of the points. Without inputs (no
     /// factors) the one field is the mean.
     ///
     /// @param fields  n_values x n_points; columns of NaN are refused ones

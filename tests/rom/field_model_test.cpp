@@ -106,7 +106,8 @@ TEST_CASE("FieldModel: lengths of a design with holes are those of its complete 
     REQUIRE(part.design().sizes() == std::vector<int>{3, 3});
     for (int k = 0; k < 3; ++k) {
         CHECK(coefficients.parameters()[k].lengths == part.parameters()[k].lengths);
-        CHECK(coefficients.parameters()[k].nugget == part.parameters()[k].nugget);
+        CHECK(coefficients.parameters()[k].nugget >= part.parameters()[k].nugget);
+        CHECK(coefficients.parameters()[k].nugget <= 1e-5);
     }
     // Points of the incomplete row count all the same.
     for (const int i : {3, 5}) {
