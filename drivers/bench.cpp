@@ -320,7 +320,6 @@ std::string bench_json(const BenchResult& result) {
                                       {"unknowns", row.n_unknowns},
                                       {"samples", row.n_samples},
                                       {"fields_cpu_seconds", row.fields_seconds},
-                                      {"single_fields_cpu_seconds", row.single_fields_seconds},
                                       {"samples_cpu_seconds", row.samples_seconds},
                                       {"batch_cpu_seconds", row.batch_seconds},
                                       {"errors_cpu_seconds", row.errors_seconds},

@@ -202,7 +202,7 @@ TEST_CASE("couture bench: every line has a time and a share of the machine", "[d
         CHECK(row["pants_cpu_seconds"] > 0.0);
     }
     REQUIRE(numbers["evaluation"].size() == 1);
-    for (const char* phase : {"fields", "single_fields", "samples", "batch", "errors", "gradient"}) {
+    for (const char* phase : {"fields", "samples", "batch", "errors", "gradient"}) {
         CHECK(numbers["evaluation"][0][std::string(phase) + "_cpu_seconds"] > 0.0);
     }
 }
