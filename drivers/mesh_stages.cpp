@@ -227,6 +227,22 @@ void warn_of_rounded_edges(const CuboidDecomposition& cuboids, const Features& f
     }
 }
 
+// Faces of the surface that no side of a cuboid belongs to.
+void warn_of_lost_faces(const NamedFaces& faces,
+                        const std::map<std::string, std::vector<CuboidSide>>& sets) {
+    std::vector<std::string> lost;
+    for (const std::string& name : faces.names) {
+        const auto set = sets.find(name);
+        if (set == sets.end() || set->second.empty()) lost.push_back(name);
+    }
+    if (lost.empty()) return;
+    log::warn(
+        fmt::format("mesh: no side of a cuboid lies on the faces {}: there are no sets of these "
+                    "names; a layout "
+                    "with cuboids at them would have them",
+                    io::quoted_list(lost)));
+}
+
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
                      const std::vector<io::SurfaceLine>& lines) {
     const SurfaceMesh& mesh = stages.mesh;
@@ -323,6 +339,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
                 "volume: sharp edges that no arc runs along are rounded by {:.2e} of the diagonal",
                 stages.solid->distance->rounded));
         }
+        if (solid.faces) warn_of_lost_faces(*solid.faces, stages.solid->cuboids.volume.sets);
     };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
@@ -332,6 +349,12 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
         return;
     }
     std::optional<ClosingCaps> caps = surface.caps;
+    if (last > MeshStage::pants && stages.invariants.n_components > 1) {
+        throw InputError(
+            "mesh: the surface has {} shells: cuboids are made of one, without cavities; take one "
+            "(shell), or stop at stage pants",
+            stages.invariants.n_components);
+    }
     if (last > MeshStage::pants) {
         if (!caps) caps = fill_boundaries(stages.mesh);
         if (options.cycle == CriterionWeights{}) options.cycle.sharp = clear_of_sharp_edges;
