@@ -115,6 +115,18 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");
     sub->add_flag("--png", eval->png, "draw the deformed part");
 
+    const auto merge = std::make_shared<RomMergeOptions>();
+    sub = add_command(*rom, command, "merge", "put snapshots together that were made apart",
+                      [&command, merge] { return run_rom_merge(*merge, command.common); });
+    sub->add_option("deck", merge->campaign.deck, "the deck that all were made by")->required();
+    sub->add_option("folders", merge->folders, "folders of shards (--out of couture rom train)")
+        ->required();
+    sub->add_option("--set", merge->campaign.overrides,
+                    "a value of the deck that was changed: section.key=value")
+        ->allow_extra_args(false);
+    sub->add_option("--out", merge->campaign.out,
+                    "folder that takes them over (default: out/<deck name>)");
+
     const auto validate = std::make_shared<RomValidateOptions>();
     sub = add_command(*rom, command, "validate", "compare a model with full solutions",
                       [&command, validate] { return run_rom_validate(*validate, command.common); });

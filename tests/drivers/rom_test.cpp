@@ -126,9 +126,17 @@ TEST_CASE("rom: stores and models are the same however the work was split", "[dr
                                           " rom train f.toml --out c --quiet; true"));
     }
     REQUIRE(run_couture("rom train f.toml --out c", folder.path()).exit_code == 0);
+    // Two shards apart, put together.
+    REQUIRE(run_couture("rom train f.toml --shard 1/2 --out d1", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("rom train f.toml --shard 2/2 --out d2", folder.path()).exit_code == 0);
+    const auto merged = run_couture("rom merge f.toml d1 d2 --out d", folder.path());
+    REQUIRE(merged.exit_code == 0);
+    CHECK_THAT(merged.output, Contains("15 of 15 solutions"));
+    CHECK(run_couture("rom merge f.toml nowhere --out d", folder.path()).exit_code == 2);
+    REQUIRE(run_couture("rom train f.toml --out d", folder.path()).exit_code == 0);
     const auto snapshots = contents(folder.path() / "a/snapshots");
     CHECK(snapshots.size() == 22);
-    for (const char* other : {"b", "c"}) {
+    for (const char* other : {"b", "c", "d"}) {
         CAPTURE(other);
         CHECK((contents(folder.path() / other / "snapshots") == snapshots));
         CHECK((io::read_text(folder.path() / other / "f.rom") ==
