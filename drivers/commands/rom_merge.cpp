@@ -7,7 +7,7 @@
 namespace couture::drivers {
 
 int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common) {
-    const RomSamples samples(options.campaign.deck, options.campaign.overrides);
+    RomSamples samples(options.campaign.deck, options.campaign.overrides);
     io::SnapshotStore store(rom_folder(options.campaign) / "snapshots", samples.job());
     for (const std::filesystem::path& folder : options.folders) {
         const std::filesystem::path snapshots = folder / "snapshots";
@@ -20,6 +20,7 @@ int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common) {
         const int n_files = store.merge(io::SnapshotStore(snapshots, samples.job()));
         if (!common.quiet) fmt::print("{}: {} files taken over\n", folder.string(), n_files);
     }
+    samples.take_added(store);
     const StoreProgress progress = progress_of(samples.plan(), store);
     if (!common.quiet) {
         fmt::print(

@@ -144,6 +144,28 @@ TEST_CASE("rom: stores and models are the same however the work was split", "[dr
     }
 }
 
+TEST_CASE("rom: samples are added until the expected error is small", "[drivers]") {
+    const TemporaryFolder folder;
+    std::string coarse = deck;
+    coarse.replace(coarse.find("samples = 5"), 11, "samples = 3");
+    io::write_text(folder.path() / "f.toml", coarse);
+    run_json("rom train f.toml", folder.path());
+    const Json before = run_json("rom validate f.toml -n 6", folder.path());
+    const auto enriched =
+        run_couture("rom enrich f.toml --tolerance 1e-3 --max-points 8", folder.path());
+    CAPTURE(enriched.errors, enriched.output);
+    CHECK_THAT(enriched.output, Contains("geometries were added"));
+    const Json after = run_json("rom validate f.toml -n 6", folder.path());
+    CHECK(after["errors"]["displacement"]["worst"].get<double>() <
+          0.5 * before["errors"]["displacement"]["worst"].get<double>());
+    // What was added stays part of the model.
+    const Json trained = run_json("rom train f.toml", folder.path());
+    CHECK(trained["geometries"] > 3);
+    CHECK(
+        run_couture("rom enrich f.toml --tolerance 1e-9 --max-points 1", folder.path()).exit_code ==
+        1);
+}
+
 TEST_CASE("rom: samples that can't be made are listed and left out", "[drivers]") {
     const TemporaryFolder folder;
     // A hole of radius 4 is as wide as the plate.
