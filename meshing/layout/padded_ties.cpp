@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "iga/core/error.h"
+#include "meshing/layout/padding.h"
 
 namespace couture::meshing {
 
@@ -43,8 +44,7 @@ std::vector<int> shortest_way(const QuadLayout& layout, const std::vector<bool>&
 
 }  // namespace
 
-PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties,
-                         const FlatCorners& flat_corners) {
+PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties) {
     const LayoutBoundary before = layout_boundary(volume);
     std::vector<bool> is_smooth(before.layout.n_arcs(), true);
     for (const LayoutTie& tie : ties) {
@@ -53,7 +53,7 @@ PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> 
             is_smooth[before.layout.find_arc(tie.nodes[k], tie.nodes[k + 1])] = false;
         }
     }
-    PaddedLayout padded = pad_layout(volume, is_smooth, flat_corners);
+    PaddedLayout padded = pad_layout(volume, is_smooth);
     const LayoutBoundary after = layout_boundary(padded.layout);
     std::vector<bool> is_taken(after.layout.n_nodes(), false);
     for (const LayoutTie& tie : ties) {

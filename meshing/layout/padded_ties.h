@@ -5,7 +5,6 @@
 
 #include "meshing/layout/cuboid_decomposition.h"
 #include "meshing/layout/embed_layout.h"
-#include "meshing/layout/padding.h"
 
 namespace couture::meshing {
 
@@ -22,10 +21,8 @@ struct PaddedTies {
 /// of ties become those in their place; a sheet that ends beside an arc divides it.
 ///
 /// @param ties  on the nodes of the volume
-/// @param flat_corners  see pad_layout
 /// @throws InputError, TopologyError  as pad_layout
-[[nodiscard]] PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties,
-                                       const FlatCorners& flat_corners = {});
+[[nodiscard]] PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties);
 
 /// Pads a volume and draws its boundary along ties on the mesh of a decomposition; sets the
 /// decomposition's surface, volume and sides.

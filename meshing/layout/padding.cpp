@@ -50,21 +50,18 @@ int n_borders(const QuadLayout& layout, const std::vector<int>& arcs,
         std::ranges::count_if(arcs, [&](int arc) { return is_border(layout, arc, is_chosen); }));
 }
 
-/// Quads that hang together through some arcs.
-DisjointSets parts_through(const QuadLayout& layout, const std::vector<bool>& is_open) {
+/// The smooth parts of the wall that hold flat arcs, and those that fill the gaps where they touch
+/// themselves at a node.
+std::vector<bool> parts_to_pad(const LayoutBoundary& boundary, const std::vector<bool>& is_smooth) {
+    const QuadLayout& layout = boundary.layout;
     DisjointSets parts(layout.n_quads());
     for (int a = 0; a < layout.n_arcs(); ++a) {
-        if (is_open[a]) parts.join(layout.arc_quads(a)[0].quad, layout.arc_quads(a)[1].quad);
+        if (is_smooth[a]) parts.join(layout.arc_quads(a)[0].quad, layout.arc_quads(a)[1].quad);
     }
-    return parts;
-}
-
-/// The quads of the parts that some belong to, and of those that fill the gaps where they touch
-/// themselves at a node.
-std::vector<bool> parts_with(const QuadLayout& layout, DisjointSets& parts,
-                             const std::vector<int>& quads) {
     std::vector<bool> is_padded_part(layout.n_quads(), false);
-    for (const int quad : quads) is_padded_part[parts.find(quad)] = true;
+    for (const int arc : flat_arcs_of(boundary, is_smooth)) {
+        is_padded_part[parts.find(layout.arc_quads(arc)[0].quad)] = true;
+    }
     const auto arcs_at = arcs_at_nodes(layout);
     std::vector<bool> is_chosen(layout.n_quads());
     for (bool has_grown = true; has_grown;) {
@@ -81,28 +78,6 @@ std::vector<bool> parts_with(const QuadLayout& layout, DisjointSets& parts,
         }
     }
     return is_chosen;
-}
-
-/// The number of an outer side.
-int quad_of(const LayoutBoundary& boundary, const CuboidSide& side, const std::string& what) {
-    const auto found = std::ranges::lower_bound(boundary.sides, side);
-    if (found == boundary.sides.end() || *found != side) {
-        throw InputError("{} side {} of cuboid {}, which is no outer side", what, side.side,
-                         side.cuboid);
-    }
-    return static_cast<int>(found - boundary.sides.begin());
-}
-
-/// The two quads beyond the arcs of a quad at a corner of it.
-std::vector<int> quads_beyond(const QuadLayout& layout, int quad, int node) {
-    std::vector<int> beyond;
-    const auto& nodes = layout.quads()[quad];
-    const auto k = std::ranges::find(nodes, node) - nodes.begin();
-    for (const auto side : {k, (k + 3) % 4}) {
-        const auto& [left, right] = layout.arc_quads(layout.sides(quad)[side].arc);
-        beyond.push_back(left.quad == quad ? right.quad : left.quad);
-    }
-    return beyond;
 }
 
 /// One sheet below chosen quads of the boundary.
@@ -225,121 +200,6 @@ PaddedLayout one_after_the_other(const PaddedLayout& first, PaddedLayout second)
     return second;
 }
 
-/// Sheets one after the other.
-class Padding {
-  public:
-    Padding(const VolumetricLayout& layout, const std::vector<bool>& is_smooth,
-            const FlatCorners& flat_corners)
-        : boundary_(layout_boundary(layout)), flat_corners_(flat_corners) {
-        check_size(boundary_.layout, is_smooth);
-        padded_.layout = layout;
-        padded_.is_smooth = is_smooth;
-        for (int node = 0; node < layout.n_nodes; ++node) padded_.node_in_place.push_back(node);
-        for (const CuboidSide& side : boundary_.sides) padded_.side_in_place[side] = side;
-        if (!flat_corners.corners.empty()) find_faces();
-    }
-
-    PaddedLayout run() {
-        for (const auto& corner : flat_corners_.corners) pad_face_beyond(corner);
-        pad_flat_arcs();
-        for (const auto& corner : flat_corners_.corners) pad_part_beyond(corner);
-        pad_flat_arcs();
-        return std::move(padded_);
-    }
-
-  private:
-    /// Of the old sides.
-    void find_faces() {
-        std::vector<bool> is_open = flat_corners_.parts_faces;
-        check_size(boundary_.layout, is_open);
-        is_open.flip();
-        DisjointSets faces = parts_through(boundary_.layout, is_open);
-        for (int q = 0; q < boundary_.layout.n_quads(); ++q) {
-            face_of_side_[boundary_.sides[q]] = faces.find(q);
-        }
-    }
-
-    [[nodiscard]] DisjointSets smooth_parts() const {
-        return parts_through(boundary_.layout, padded_.is_smooth);
-    }
-
-    /// Quads on the same face.
-    [[nodiscard]] DisjointSets faces() const {
-        std::map<CuboidSide, CuboidSide> old_side = padded_.strips;
-        for (const auto& [old, side] : padded_.side_in_place) old_side[side] = old;
-        std::map<int, int> first_of_face;
-        DisjointSets quads(boundary_.layout.n_quads());
-        for (int q = 0; q < boundary_.layout.n_quads(); ++q) {
-            const int face = face_of_side_.at(old_side.at(boundary_.sides[q]));
-            quads.join(first_of_face.try_emplace(face, q).first->second, q);
-        }
-        return quads;
-    }
-
-    void insert(const std::vector<bool>& is_chosen) {
-        padded_ = one_after_the_other(
-            padded_, Sheet(padded_.layout, boundary_, is_chosen, padded_.is_smooth).take());
-        boundary_ = layout_boundary(padded_.layout);
-    }
-
-    /// Where a corner is now; quad -1 if its quad has left the corner's place for strips.
-    struct Place {
-        int quad = -1;
-        std::vector<int> beyond;
-    };
-    [[nodiscard]] Place place_of(const FlatCorners::Corner& corner) const {
-        const auto side = padded_.side_in_place.find(corner.side);
-        if (side == padded_.side_in_place.end() || corner.node < 0 ||
-            corner.node >= static_cast<int>(padded_.node_in_place.size())) {
-            throw InputError("a flat corner on side {} of cuboid {} at node {}, which is none",
-                             corner.side.side, corner.side.cuboid, corner.node);
-        }
-        const int quad = quad_of(boundary_, side->second, "a corner on");
-        const int node = padded_.node_in_place[corner.node];
-        if (std::ranges::count(boundary_.layout.quads()[quad], node) == 0) return {};
-        return {quad, quads_beyond(boundary_.layout, quad, node)};
-    }
-
-    /// Where no sheet below smooth parts helps.
-    void pad_face_beyond(const FlatCorners::Corner& corner) {
-        const auto [quad, beyond] = place_of(corner);
-        if (quad < 0) return;
-        DisjointSets smooth = smooth_parts();
-        if (!parts_with(boundary_.layout, smooth, beyond)[quad]) return;
-        DisjointSets same_face = faces();
-        const std::vector<bool> is_chosen = parts_with(boundary_.layout, same_face, beyond);
-        if (!is_chosen[quad]) insert(is_chosen);
-    }
-
-    void pad_part_beyond(const FlatCorners::Corner& corner) {
-        const auto [quad, beyond] = place_of(corner);
-        if (quad < 0) return;
-        DisjointSets smooth = smooth_parts();
-        const std::vector<bool> is_chosen = parts_with(boundary_.layout, smooth, beyond);
-        if (!is_chosen[quad]) insert(is_chosen);
-    }
-
-    /// Cuboids of a sheet have flat arcs of their own only where one side's cuboid makes two strips
-    /// that turn within a smooth part, or where the sheet ends within one. The sheet below that
-    /// part ends there with two cuboids, so that each such corner asks for one sheet at most.
-    void pad_flat_arcs() {
-        while (true) {
-            std::vector<int> quads;
-            for (const int arc : flat_arcs_of(boundary_, padded_.is_smooth)) {
-                quads.push_back(boundary_.layout.arc_quads(arc)[0].quad);
-            }
-            if (quads.empty()) return;
-            DisjointSets smooth = smooth_parts();
-            insert(parts_with(boundary_.layout, smooth, quads));
-        }
-    }
-
-    LayoutBoundary boundary_;
-    const FlatCorners& flat_corners_;
-    std::map<CuboidSide, int> face_of_side_;
-    PaddedLayout padded_;
-};
-
 }  // namespace
 
 std::vector<int> flat_arcs(const VolumetricLayout& layout, const std::vector<bool>& is_smooth) {
@@ -354,7 +214,12 @@ PaddedLayout insert_sheet(const VolumetricLayout& layout, const std::vector<Cubo
     check_size(boundary.layout, is_smooth);
     std::vector<bool> is_chosen(boundary.sides.size(), false);
     for (const CuboidSide& side : sides) {
-        is_chosen[quad_of(boundary, side, "a sheet below")] = true;
+        const auto found = std::ranges::lower_bound(boundary.sides, side);
+        if (found == boundary.sides.end() || *found != side) {
+            throw InputError("a sheet below side {} of cuboid {}, which is no outer side",
+                             side.side, side.cuboid);
+        }
+        is_chosen[found - boundary.sides.begin()] = true;
     }
     const auto arcs_at = arcs_at_nodes(boundary.layout);
     for (int node = 0; node < layout.n_nodes; ++node) {
@@ -367,9 +232,24 @@ PaddedLayout insert_sheet(const VolumetricLayout& layout, const std::vector<Cubo
     return Sheet(layout, boundary, is_chosen, is_smooth).take();
 }
 
-PaddedLayout pad_layout(const VolumetricLayout& layout, const std::vector<bool>& is_smooth,
-                        const FlatCorners& flat_corners) {
-    return Padding(layout, is_smooth, flat_corners).run();
+PaddedLayout pad_layout(const VolumetricLayout& layout, const std::vector<bool>& is_smooth) {
+    LayoutBoundary boundary = layout_boundary(layout);
+    check_size(boundary.layout, is_smooth);
+    PaddedLayout padded;
+    padded.layout = layout;
+    padded.is_smooth = is_smooth;
+    for (int node = 0; node < layout.n_nodes; ++node) padded.node_in_place.push_back(node);
+    for (const CuboidSide& side : boundary.sides) padded.side_in_place[side] = side;
+    // Cuboids of a sheet have flat arcs of their own only where one side's cuboid makes two strips
+    // that turn within a smooth part. The sheet below that part ends there with two cuboids, so
+    // that each such corner asks for one sheet at most.
+    while (!flat_arcs_of(boundary, padded.is_smooth).empty()) {
+        const auto is_chosen = parts_to_pad(boundary, padded.is_smooth);
+        padded = one_after_the_other(
+            padded, Sheet(padded.layout, boundary, is_chosen, padded.is_smooth).take());
+        boundary = layout_boundary(padded.layout);
+    }
+    return padded;
 }
 
 }  // namespace couture::meshing

@@ -17,19 +17,6 @@ namespace couture::meshing {
 [[nodiscard]] std::vector<int> flat_arcs(const VolumetricLayout& layout,
                                          const std::vector<bool>& is_smooth);
 
-/// Corners of outer sides whose two arcs there turn so little on the surface that the side's
-/// Jacobian determinant all but vanishes, as where two arcs lie on one circle.
-struct FlatCorners {
-    struct Corner {
-        CuboidSide side;
-        int node = -1;
-    };
-    std::vector<Corner> corners;
-    /// For each arc of layout_boundary(layout).layout whether faces of the surface meet there,
-    /// smoothly or not.
-    std::vector<bool> parts_faces;
-};
-
 /// A layout with sheets of cuboids along its wall.
 struct PaddedLayout {
     /// The old cuboids and nodes come first and keep their numbers, but old nodes at a sheet lie
@@ -62,13 +49,8 @@ struct PaddedLayout {
 /// whole smooth parts of the wall, so that it ends at sharp arcs only: closed on itself, or on
 /// caps, where a cap of one quad becomes one of five.
 ///
-/// Flat corners go where a sheet lies below the wall beyond both arcs and leaves their side strips
-/// of its own. Where that wall is of the side's smooth part, a sheet comes first below the faces
-/// beyond alone. A corner stays where these are the side's own face, or can't be told from it.
-///
-/// @throws InputError, TopologyError  as flat_arcs, for corners too
+/// @throws InputError, TopologyError  as flat_arcs
 [[nodiscard]] PaddedLayout pad_layout(const VolumetricLayout& layout,
-                                      const std::vector<bool>& is_smooth,
-                                      const FlatCorners& flat_corners = {});
+                                      const std::vector<bool>& is_smooth);
 
 }  // namespace couture::meshing

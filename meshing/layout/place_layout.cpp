@@ -5,7 +5,6 @@
 #include "iga/core/error.h"
 #include "meshing/layout/disc_cuts.h"
 #include "meshing/layout/feature_ties.h"
-#include "meshing/layout/flat_corners.h"
 #include "meshing/layout/padded_ties.h"
 #include "meshing/layout/tied_nodes.h"
 
@@ -102,8 +101,7 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     for (const LayoutTie& tie : feature_ties) {
         held.insert({tie.vertices.front(), tie.vertices.back()});
     }
-    const FlatCorners corners = flat_corners(result.mesh, boundary, feature_ties);
-    PaddedTies padded = pad_with_ties(placed.layout, std::move(feature_ties), corners);
+    PaddedTies padded = pad_with_ties(placed.layout, std::move(feature_ties));
     const QuadLayout outside = layout_boundary(padded.volume).layout;
     const std::vector<Vector3> positions =
         padded_positions(placed.positions, padded.node_in_place, outside);

@@ -10,7 +10,7 @@ namespace couture::meshing {
 /// Draws the boundary of a coarse mesh of cuboids, which lies about where the solid does, on the
 /// solid's surface, padded where it needs it: where outer sides of one cuboid meet at a smooth arc
 /// or at a feature with an interior angle of more than 120 degrees, around which the corners of two
-/// cuboids are better; and where two sides of an outer side lie on one smooth curve.
+/// cuboids are better.
 ///
 /// Arcs that lie near features are tied to these (tie_features), then it is padded and more arcs
 /// are drawn where the surface is not cut into discs yet (cut_into_discs). The remaining arcs are
