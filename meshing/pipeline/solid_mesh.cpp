@@ -40,9 +40,12 @@ void check_options(const SolidMeshOptions& options) {
     }
 }
 
-// Length of each sheet of the volume: the median of the wanted lengths of its arcs on the surface,
-// weighted by these lengths.
-std::vector<double> sheet_lengths(const CuboidDecomposition& cuboids, const LayoutCells& cells) {
+// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the surface,
+// weighted by these lengths, over the wanted size.
+std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
+                                  const SolidMeshOptions& options) {
+    const double size = options.element_size > 0.0 ? options.element_size
+                                                   : bounding_box_diagonal(cuboids.mesh) / 20.0;
     const std::vector<double> lengths = cuboids.arc_lengths.empty()
                                             ? arc_lengths(cuboids.mesh, cuboids.surface)
                                             : cuboids.arc_lengths;
@@ -52,7 +55,7 @@ std::vector<double> sheet_lengths(const CuboidDecomposition& cuboids, const Layo
         const QuadLayout::Arc& arc = layout.arcs()[a];
         of_sheet[cells.sheets[cells.find_edge(arc.from, arc.to)]].push_back(lengths[a]);
     }
-    std::vector<double> medians;
+    std::vector<int> elements;
     for (std::vector<double>& sheet : of_sheet) {
         std::ranges::sort(sheet);
         double half = 0.0;
@@ -63,20 +66,8 @@ std::vector<double> sheet_lengths(const CuboidDecomposition& cuboids, const Layo
             half -= l;
             if (half <= 0.0) break;
         }
-        medians.push_back(median);
-    }
-    return medians;
-}
-
-// Elements of each sheet of the volume: its length over the wanted size.
-std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
-                                  const SolidMeshOptions& options) {
-    const double size = options.element_size > 0.0 ? options.element_size
-                                                   : bounding_box_diagonal(cuboids.mesh) / 20.0;
-    std::vector<int> elements;
-    for (const double length : sheet_lengths(cuboids, cells)) {
         elements.push_back(
-            std::max(options.min_elements, static_cast<int>(std::lround(length / size))));
+            std::max(options.min_elements, static_cast<int>(std::lround(median / size))));
     }
     return elements;
 }
@@ -103,19 +94,14 @@ void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
 }
 
 // Nodes in better places.
-void make_quads(SolidMesh& solid, const LayoutCells& cells, const SolidMeshOptions& options) {
+void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     const EmbeddedLayout& surface = solid.cuboids.surface;
     NodeRelocationOptions relocation;
     relocation.max_iterations = options.max_relocations;
-    if (!solid.cuboids.arc_lengths.empty()) {
-        const std::vector<double> of_sheets = sheet_lengths(solid.cuboids, cells);
-        for (int a = 0; a < surface.layout.n_arcs(); ++a) {
-            const QuadLayout::Arc& arc = surface.layout.arcs()[a];
-            relocation.cell_lengths.push_back(
-                of_sheets[cells.sheets[cells.find_edge(arc.from, arc.to)]] /
-                solid.mapped_quads->n_cells[a]);
-        }
+    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
+    for (std::size_t a = 0; a < lengths.size(); ++a) {
+        relocation.cell_lengths.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
     }
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     if (relocated.report.n_inverted > 0) {
@@ -268,7 +254,7 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
                 n_flipped);
         }
         say("moving nodes");
-        make_quads(solid, cells, options);
+        make_quads(solid, options);
         if (options.last == SolidStage::quads) return solid;
         if (!adds_elements || round == max_rounds || !add_elements(solid, cells, options)) break;
     }
