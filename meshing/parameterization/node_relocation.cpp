@@ -453,6 +453,11 @@ void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocatio
 RelocatedSamples relocate_nodes(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                                 const LayoutSamples& samples,
                                 const NodeRelocationOptions& options) {
+    const auto n_lengths = static_cast<int>(options.cell_lengths.size());
+    if (n_lengths > 0 && n_lengths != embedding.layout.n_arcs()) {
+        throw InputError("relocate_nodes: {} lengths of cells for {} arcs; give none or all",
+                         n_lengths, embedding.layout.n_arcs());
+    }
     const SampleGrid grid = make_sample_grid(embedding.layout, samples.n_cells);
     const SurfaceSlide slide(mesh, embedding, grid);
     CellEnergy energy(embedding, grid, slide, options.cell_lengths);

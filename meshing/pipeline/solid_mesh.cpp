@@ -40,8 +40,8 @@ void check_options(const SolidMeshOptions& options) {
     }
 }
 
-// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the surface,
-// weighted by these lengths, over the wanted size.
+// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the
+// surface, weighted by these lengths, over the wanted size.
 std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
                                   const SolidMeshOptions& options) {
     const double size = options.element_size > 0.0 ? options.element_size
