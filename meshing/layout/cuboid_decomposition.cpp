@@ -6,6 +6,7 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/layout/blunt_path.h"
 #include "meshing/layout/cut_turns.h"
 #include "meshing/layout/equator.h"
 #include "meshing/layout/glue.h"
@@ -94,7 +95,7 @@ class Drawing {
             for (std::size_t c = 0; c < patch.curves.size(); ++c) {
                 ties.push_back({patch.curves[c].vertices,
                                 glued_nodes(p, choice_.matches[p].curves[c]), true,
-                                patch.curves[c].kind == ArcKind::reflex,
+                                is_blunt(opened_, patch.curves[c].vertices),
                                 fmt::format("sharp edge {} of patch {}", c, p)});
             }
             for (std::size_t l = 0; l < patch.loops.size(); ++l) {
@@ -128,7 +129,7 @@ class Drawing {
         add_ties(loop.vertices, nodes, fixed, fmt::format("curve {}", loop.side.curve), ties);
         for (std::size_t t = first; t < ties.size(); ++t) {
             ties[t].is_feature = is_sharp(ties[t].vertices);
-            ties[t].is_reflex = ties[t].is_feature && is_reflex(ties[t].vertices);
+            ties[t].is_blunt = ties[t].is_feature && is_blunt(opened_, ties[t].vertices);
         }
     }
 
@@ -175,11 +176,6 @@ class Drawing {
             if (opened_.data(edge).feature < 0 && !opened_.is_boundary(edge)) return false;
         }
         return true;
-    }
-
-    [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
-        const EdgeHandle first = opened_.edge_handle(opened_.find_halfedge(path[0], path[1]));
-        return !opened_.is_boundary(first) && kind_along(opened_, path) == ArcKind::reflex;
     }
 
     const SurfaceMesh& opened_;

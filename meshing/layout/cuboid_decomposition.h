@@ -24,6 +24,8 @@ struct CuboidDecomposition {
     VolumetricLayout volume;
     /// The side that each quad of the surface is.
     std::vector<CuboidSide> sides;
+    /// For each arc of the surface the length that it should have; empty: any.
+    std::vector<double> arc_lengths;
     /// For each patch of the decomposition the name of its template.
     std::vector<std::string> templates;
     /// What was decided, for other members of the family; without elements.

@@ -50,7 +50,7 @@ PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> 
     const LayoutBoundary before = layout_boundary(volume);
     std::vector<bool> is_smooth(before.layout.n_arcs(), true);
     for (const LayoutTie& tie : ties) {
-        if (!tie.is_feature || tie.is_reflex) continue;
+        if (!tie.is_feature || tie.is_blunt) continue;
         for (std::size_t k = 0; k + 1 < tie.nodes.size(); ++k) {
             is_smooth[before.layout.find_arc(tie.nodes[k], tie.nodes[k + 1])] = false;
         }

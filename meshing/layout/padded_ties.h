@@ -17,7 +17,7 @@ struct PaddedTies {
     std::vector<int> node_in_place;
 };
 
-/// Arcs on ties of features that are not reflex are sharp, all others smooth (pad_layout). Nodes
+/// Arcs on ties of features that are not blunt are sharp, all others smooth (pad_layout). Nodes
 /// of ties become those in their place; a sheet that ends beside an arc divides it.
 ///
 /// @param ties  on the nodes of the volume

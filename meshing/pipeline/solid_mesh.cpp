@@ -40,13 +40,15 @@ void check_options(const SolidMeshOptions& options) {
     }
 }
 
-// Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
-// weighted by these lengths, over the wanted size.
+// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the
+// surface, weighted by these lengths, over the wanted size.
 std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
                                   const SolidMeshOptions& options) {
     const double size = options.element_size > 0.0 ? options.element_size
                                                    : bounding_box_diagonal(cuboids.mesh) / 20.0;
-    const std::vector<double> lengths = arc_lengths(cuboids.mesh, cuboids.surface);
+    const std::vector<double> lengths = cuboids.arc_lengths.empty()
+                                            ? arc_lengths(cuboids.mesh, cuboids.surface)
+                                            : cuboids.arc_lengths;
     std::vector<std::vector<double>> of_sheet(cells.n_sheets());
     const QuadLayout& layout = cuboids.surface.layout;
     for (int a = 0; a < layout.n_arcs(); ++a) {
@@ -127,6 +129,10 @@ void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     const EmbeddedLayout& surface = solid.cuboids.surface;
     NodeRelocationOptions relocation;
     relocation.max_iterations = options.max_relocations;
+    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
+    for (std::size_t a = 0; a < lengths.size(); ++a) {
+        relocation.cell_lengths.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
+    }
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(

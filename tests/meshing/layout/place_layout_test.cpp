@@ -68,6 +68,14 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
         INFO("node " << n);
         CHECK((cuboids.mesh.point(vertex) - placed.positions[n]).norm() < nearby * diagonal);
     }
+    const QuadLayout& layout = cuboids.surface.layout;
+    REQUIRE(static_cast<int>(cuboids.arc_lengths.size()) == layout.n_arcs());
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        if (cuboids.surface.is_feature_arc[a]) continue;
+        const auto [from, to] = layout.arcs()[a];
+        CHECK(cuboids.arc_lengths[a] ==
+              Approx((placed.positions[from] - placed.positions[to]).norm()));
+    }
     for (const int degree : {2, 3}) {
         SolidMeshOptions options;
         options.volume.degree = degree;
