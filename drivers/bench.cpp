@@ -226,6 +226,8 @@ BenchResult run_benchmarks(const BenchOptions& options) {
         result.cuts.push_back(measure_cutting("perforated", perforated_plate(edge_length)));
     }
     result.meshing = measure_meshing(options.quick);
+    log::info("evaluation of reduced models");
+    result.evaluations = measure_evaluations(options.quick);
     return result;
 }
 
@@ -278,6 +280,7 @@ std::string bench_text(const BenchResult& result) {
             row.min_scaled_jacobian > 0.0 ? fmt::format("{:.3f}", row.min_scaled_jacobian) : "-",
             row.cpu_seconds);
     }
+    text += evaluation_text(result.evaluations);
     text += fmt::format("\nPeak memory of the process: {:.0f} MB\n", 1e-6 * peak_memory());
     return text;
 }
@@ -331,6 +334,17 @@ std::string bench_json(const BenchResult& result) {
                                    {"elements", row.n_elements},
                                    {"min_scaled_jacobian", row.min_scaled_jacobian},
                                    {"cpu_seconds", row.cpu_seconds}});
+    }
+    json["evaluation"] = nlohmann::ordered_json::array();
+    for (const EvaluationRow& row : result.evaluations) {
+        json["evaluation"].push_back({{"modes", row.n_modes},
+                                      {"unknowns", row.n_unknowns},
+                                      {"samples", row.n_samples},
+                                      {"fields_cpu_seconds", row.fields_seconds},
+                                      {"samples_cpu_seconds", row.samples_seconds},
+                                      {"batch_cpu_seconds", row.batch_seconds},
+                                      {"errors_cpu_seconds", row.errors_seconds},
+                                      {"gradient_cpu_seconds", row.gradient_seconds}});
     }
     json["peak_memory_bytes"] = peak_memory();
     return json.dump(2);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/mesh_bench.h"
+#include "drivers/reduced_model_bench.h"
 #include "iga/linalg/machine_limits.h"
 
 namespace couture::drivers {
@@ -61,6 +62,7 @@ struct BenchResult {
     std::vector<SolveRow> solves;
     std::vector<CuttingRow> cuts;
     std::vector<MeshingRow> meshing;
+    std::vector<EvaluationRow> evaluations;
 };
 
 [[nodiscard]] BenchResult run_benchmarks(const BenchOptions& options);
