@@ -6,7 +6,6 @@
 #include "iga/core/format.h"
 #include "meshing/pipeline/boundary_triangles.h"
 #include "meshing/surface/self_intersection.h"
-#include "meshing/volume/optimize_volume.h"
 
 namespace couture::meshing {
 
@@ -82,6 +81,7 @@ RemeshedSolid remesh_solid(const iga::MultiPatch<3>& deformed, const BoundaryFea
     SolidMesh solid = mesh_solid(std::move(cuboids), options);
     result.relocation = *solid.relocation;
     result.report = solid.volume->report;
+    result.distance = *solid.distance;
     const auto& parameterization = result.report.parameterization;
     if (parameterization.validity != iga::Validity::valid) {
         throw GeometryError(
@@ -95,9 +95,6 @@ RemeshedSolid remesh_solid(const iga::MultiPatch<3>& deformed, const BoundaryFea
         result.volume.patches[p] = {deformed.patches[p].space(),
                                     solid.volume->volume.patches[p].control_points()};
     }
-    result.volume =
-        optimize_volume(result.volume, features, {.hold_reentrant_edges = false}).volume;
-    result.distance = volume_distance(result.volume, solid.cuboids);
     result.volume_change = iga::volume(result.volume) / iga::volume(deformed) - 1.0;
     return result;
 }

@@ -19,9 +19,8 @@ struct RemeshedSolid {
 };
 
 /// The same body in new splines: its boundary is triangulated, mapped anew to the layout of its
-/// patches (mesh_solid), with nodes at better places, and filled again; then its control points
-/// slide, as the map aims at even quads and not at elements like cubes (optimize_volume). Feature
-/// curves are followed; corners stay.
+/// patches (mesh_solid), with nodes at better places, and filled again. Its feature curves are
+/// followed; corners stay.
 ///
 /// @param deformed  a state of the body from which `features` were found; B-splines without weights
 /// @throws GeometryError  if the boundary meets itself (names how often and where), if the new
