@@ -276,7 +276,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_flag("--long", verify->with_long, "the long cases too");
 
     const auto bench = std::make_shared<BenchCommandOptions>();
-    sub = add_command(app, command, "bench", "time assembly and solvers on this machine",
+    sub = add_command(app, command, "bench", "time assembly, solvers and meshing on this machine",
                       [&command, bench] { return run_bench(*bench, command.common); });
     sub->add_flag("--quick", bench->quick, "small cases only, a few seconds");
     sub->add_option("--save", bench->save, "also write the numbers to this JSON file");
