@@ -168,6 +168,10 @@ void check_parts(const ReducedModelParts& parts) {
 
 }  // namespace
 
+InnerProduct mode_product(const iga::Space<3>& reference, ModeProduct product) {
+    return product == ModeProduct::l2 ? InnerProduct(mass_matrix(reference), 3) : InnerProduct(3);
+}
+
 ReducedModel::ReducedModel(const SnapshotSet& snapshots, const ReducedModelOptions& options)
     : ReducedModel(trained(snapshots, options)) {}
 

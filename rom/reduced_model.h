@@ -30,6 +30,11 @@ struct ReducedModelOptions {
     KrigingOptions kriging = {};
 };
 
+/// The product of displacements and of control points of a family.
+///
+/// @param reference  the reference member's own functions
+[[nodiscard]] InnerProduct mode_product(const iga::Space<3>& reference, ModeProduct product);
+
 /// All that a reduced model is made of, for files.
 struct ReducedModelParts {
     ParameterSpace parameters;
