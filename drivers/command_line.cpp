@@ -79,15 +79,17 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
 }
 
 /// Of commands that make snapshots.
-void add_campaign_options(CLI::App* sub, RomTrainOptions& options) {
+void add_campaign_options(CLI::App* sub, RomTrainOptions& options, bool has_shards = true) {
     sub->add_option("deck", options.deck, "the deck (TOML) with its section [rom]")->required();
     sub->add_option("--set", options.overrides, "change a value of the deck: section.key=value")
         ->allow_extra_args(false);
     sub->add_option("--out", options.out, "folder of the results (default: out/<deck name>)");
     sub->add_option("--jobs", options.n_jobs, "processes at once (default: as many as cores)")
         ->check(CLI::Range(1, max_threads));
-    sub->add_option("--shard", options.shard,
-                    "I/N: make only the I-th of N equal parts of the snapshots");
+    if (has_shards) {
+        sub->add_option("--shard", options.shard,
+                        "I/N: make only the I-th of N equal parts of the snapshots");
+    }
     sub->add_flag("--retry", options.retry, "try samples again that were refused before");
 }
 
@@ -114,6 +116,28 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_flag("--force", eval->is_forced, "answer also far outside of the training box");
     sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");
     sub->add_flag("--png", eval->png, "draw the deformed part");
+
+    const auto enrich = std::make_shared<RomEnrichOptions>();
+    sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",
+                      [&command, enrich] { return run_rom_enrich(*enrich, command.common); });
+    add_campaign_options(sub, enrich->campaign, false);
+    sub->add_option("--tolerance", enrich->tolerance,
+                    "wanted relative error of displacements (default: 0.01)")
+        ->check(CLI::Range(1e-12, 1.0));
+    sub->add_option("--max-points", enrich->max_points, "geometries added at most (default: 20)")
+        ->check(CLI::Range(1, 100'000));
+
+    const auto merge = std::make_shared<RomMergeOptions>();
+    sub = add_command(*rom, command, "merge", "put snapshots together that were made apart",
+                      [&command, merge] { return run_rom_merge(*merge, command.common); });
+    sub->add_option("deck", merge->campaign.deck, "the deck that all were made by")->required();
+    sub->add_option("folders", merge->folders, "folders of shards (--out of couture rom train)")
+        ->required();
+    sub->add_option("--set", merge->campaign.overrides,
+                    "a value of the deck that was changed: section.key=value")
+        ->allow_extra_args(false);
+    sub->add_option("--out", merge->campaign.out,
+                    "folder that takes them over (default: out/<deck name>)");
 
     const auto validate = std::make_shared<RomValidateOptions>();
     sub = add_command(*rom, command, "validate", "compare a model with full solutions",

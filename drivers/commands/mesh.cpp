@@ -238,6 +238,10 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                            {"min_scaled_jacobian", solid.quad_quality->smallest_scaled_jacobian},
                            {"mean_scaled_jacobian", solid.quad_quality->mean_scaled_jacobian},
                            {"hausdorff", solid.quad_quality->hausdorff_distance}};
+        if (solid.field) {
+            object["quads"]["angle_to_field"] =
+                meshing::mean_angle_to_field(*solid.quads, solid.cuboids.mesh, solid.field->field);
+        }
     }
     if (solid.surfaces) {
         const auto& [surfaces, report] = *solid.surfaces;

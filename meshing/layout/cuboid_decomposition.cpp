@@ -192,6 +192,18 @@ class Drawing {
     GluedLayout glued_;
 };
 
+// Templates fill what one shell bounds; none of the library surrounds a cavity.
+void check_shells(const PantsDecomposition& pants) {
+    int n_shells = 1;
+    for (const PantsPatch& patch : pants.patches) n_shells = std::max(n_shells, patch.shell + 1);
+    if (n_shells == 1) return;
+    throw TopologyError(
+        "layout: the surface has {} shells, so that the solid has {}; templates of cuboids "
+        "surround "
+        "none: give a layout of cuboids around them ([meshing] layout, --layout)",
+        n_shells, n_shells == 2 ? "a cavity" : fmt::format("{} cavities", n_shells - 1));
+}
+
 // Whether a recorded choice names nodes and arcs that its templates have, and all cuts.
 void check_choice(const LayoutChoice& choice, const PantsDecomposition& pants,
                   const TemplateLibrary& library) {
@@ -248,6 +260,7 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
                                            const PantsDecomposition& pants, const ClosingCaps& caps,
                                            const TemplateLibrary& library,
                                            const MatchOptions& options) {
+    check_shells(pants);
     std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
     LayoutChoice choice = choose_layout(opened, patches, pants, library, options);
     turn_smooth_cuts(opened, pants, library, patches, choice);
@@ -260,6 +273,7 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
 CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& features,
                                    const PantsDecomposition& pants, const ClosingCaps& caps,
                                    const TemplateLibrary& library, const LayoutRecord& record) {
+    check_shells(pants);
     std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
     const LayoutChoice choice = repeat_choice(opened, record, patches);
     check_choice(choice, pants, library);

@@ -35,9 +35,9 @@ struct CuboidDecomposition {
 ///
 /// @param opened    with numbers of features and of the decomposition's curves on its edges
 /// @param caps      what closes its boundary loops
-/// @throws TopologyError  if no template fits a patch (names the patch, how many feature curves and
-///                        corners it has, and the templates that there are), if no choice fits
-///                        across the cuts, or as embed_layout
+/// @throws TopologyError  if the solid has a cavity, if no template fits a patch (names the patch,
+///                        how many feature curves and corners it has, and the templates that there
+///                        are), if no choice fits across the cuts, or as embed_layout
 ///
 /// Source: [Maquart19] Sec. 3.2, 3.3.2.
 [[nodiscard]] CuboidDecomposition decompose_into_cuboids(

@@ -112,6 +112,15 @@ void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
     cuboids.record.sets = cuboids.volume.sets;
 }
 
+// In words, where the grid turns against the surface.
+std::string place_of_worst(const SurfaceMesh& mesh, const LayoutSamples& samples) {
+    const std::optional<TurnedCorner> worst = worst_turned_corner(samples, mesh);
+    if (!worst) return "";
+    return fmt::format(", the worst near ({:.6g}, {:.6g}, {:.6g}) in the quad of nodes {}",
+                       worst->place.x(), worst->place.y(), worst->place.z(),
+                       samples.layout.quad_name(worst->quad));
+}
+
 // Nodes in better places.
 void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
@@ -121,11 +130,10 @@ void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
-            "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
+            "mesh: {} corners of quads stay turned over on the surface{}: the cuboids are too "
             "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
-            "loop) "
-            "or templates help, or smaller elements",
-            relocated.report.n_inverted);
+            "loop) or templates help, other places of a layout's nodes, or smaller elements",
+            relocated.report.n_inverted, place_of_worst(mesh, relocated.samples));
     }
     solid.relocation = relocated.report;
     solid.quads = std::move(relocated.samples);

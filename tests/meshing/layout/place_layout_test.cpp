@@ -5,6 +5,7 @@
 #include "iga/core/error.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/parts/parts.h"
+#include "meshing/pipeline/rounded_edges.h"
 #include "meshing/pipeline/solid_mesh.h"
 
 using namespace couture;
@@ -56,6 +57,7 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
     REQUIRE(placed.layout.n_cuboids() == 10);
     CuboidDecomposition cuboids = place_layout(solid.mesh, solid.features, placed);
     CHECK(untied_length(cuboids) == 0.0);
+    CHECK(find_rounded_edges(cuboids).empty());
     CHECK(cuboids.volume.n_cuboids() == 10);
     const double diagonal = bounding_box_diagonal(solid.mesh);
     // Nodes on no sharp edge lie where embed_layout puts them.
