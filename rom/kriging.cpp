@@ -177,7 +177,7 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
     const KrigingParameters parameters = to_parameters(log_parameters, n_inputs, options);
     const std::vector<MatrixX> factors =
         correlation_factors(design, options.correlation, parameters.lengths);
-    const auto K = CorrelationMatrix::factored(factors, parameters.nugget);
+    const auto K = CorrelationMatrix::factored(factors, parameters.nugget, true);
     gradient = VectorX::Zero(log_parameters.size());
     if (!K) {
         return std::numeric_limits<double>::infinity();
