@@ -34,8 +34,30 @@ std::vector<CavityPlace> samples_by_distance(const TriangleTree& wall) {
     return samples;
 }
 
+constexpr int n_directions = 200;
+
+/// Number i of a spiral from pole to pole, by the golden angle.
+Vector3 direction(int i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n_directions;
+    const double angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const double r = std::sqrt(1.0 - z * z);
+    return Vector3(r * std::cos(angle), r * std::sin(angle), z).normalized();
+}
+
+bool meets_wall(const TriangleTree& wall, const Vector3& position, int i) {
+    return wall.first_contact(position, direction(i), 0.0).has_value();
+}
+
+/// The same as by enclosed_part, but most places outside are known after a few directions.
 bool is_inside(const TriangleTree& wall, const Vector3& position) {
-    return enclosed_part(wall, position) >= least_enclosed;
+    // All around from the start: without common divisor with the number of directions.
+    constexpr int stride = 77;
+    const int most_open = static_cast<int>((1.0 - least_enclosed) * n_directions);
+    int n_open = 0;
+    for (int i = 0; i < n_directions && n_open <= most_open; ++i) {
+        n_open += meets_wall(wall, position, i * stride % n_directions) ? 0 : 1;
+    }
+    return n_open <= most_open;
 }
 
 /// Steps along the axes to farther places, halved when there is none.
@@ -61,16 +83,8 @@ CavityPlace climb(const TriangleTree& wall, CavityPlace place, double step) {
 }  // namespace
 
 double enclosed_part(const TriangleTree& wall, const Vector3& position) {
-    constexpr int n_directions = 200;
     int n_met = 0;
-    for (int i = 0; i < n_directions; ++i) {
-        // A spiral from pole to pole, by the golden angle.
-        const double z = 1.0 - (2.0 * i + 1.0) / n_directions;
-        const double angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
-        const double r = std::sqrt(1.0 - z * z);
-        const Vector3 direction(r * std::cos(angle), r * std::sin(angle), z);
-        n_met += wall.first_contact(position, direction.normalized(), 0.0) ? 1 : 0;
-    }
+    for (int i = 0; i < n_directions; ++i) n_met += meets_wall(wall, position, i) ? 1 : 0;
     return static_cast<double>(n_met) / n_directions;
 }
 

@@ -13,18 +13,18 @@ struct InflationOptions {
     /// Quads along each edge of the cube whose image the sphere is: 6 n^2 in all.
     int n_divisions = 16;
     /// Of the sphere at the start; nothing: find_cavity_center.
-    std::optional<Vector3> center;
+    std::optional<Vector3> center = std::nullopt;
     /// Nothing: nine tenths of the centre's distance from the wall.
-    std::optional<double> radius;
+    std::optional<double> radius = std::nullopt;
     /// Largest (l - l0) / l0 of an edge, l0 being its length at the start.
     double strain_limit = 3.0;
     /// Of edges with an end that would meet no wall on its way, instead of `strain_limit`.
-    std::optional<double> outlet_strain_limit;
+    std::optional<double> outlet_strain_limit = std::nullopt;
     /// Other limits where the middle of an edge is; the first that fits counts, before all others.
-    std::vector<StrainRegion> regions;
+    std::vector<StrainRegion> regions = {};
     /// A ball of this diameter around a vertex touches the rim of holes that it does not fit
     /// through, so that they count as wall; nothing: 0.5 % of the diagonal of the wall's box.
-    std::optional<double> hole_size;
+    std::optional<double> hole_size = std::nullopt;
 };
 
 /// Why a vertex stopped.
