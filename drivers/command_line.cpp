@@ -96,7 +96,7 @@ void add_inflate_options(CLI::App* sub, ShapeInflateOptions& options) {
                     "X0,Y0,Z0,X1,Y1,Z1,LIMIT: another strain limit in a box")
         ->allow_extra_args(false);
     sub->add_option("--hole-size", options.hole_size,
-                    "holes narrower than this are closed (default: 0.5 % of the diagonal)");
+                    "holes narrower than this are closed (default: as long as most edges)");
     sub->add_option("--divisions", options.n_divisions,
                     "n: the sphere has 6 n^2 quads (default: 16)");
     sub->add_option("--out", options.out, "folder of the results (default: out/<name>)");

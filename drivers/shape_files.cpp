@@ -171,7 +171,7 @@ class ShapeFiles {
                              s == 0 ? "mean" : fmt::format("mode {}, {:+d} std. dev.", k + 1, s));
                 if (s != 0) {
                     scene.range = std::array{0.0, distances.maxCoeff()};
-                    scene.legend = "distance from the mean";
+                    scene.legend = "distance";
                 }
                 row.push_back(sized(std::move(scene), 480, 400));
             }

@@ -135,7 +135,7 @@ io::Scene scene_of(const InflatedSphere& sphere, const meshing::TriangleSoup& wa
         quads.triangles.row(static_cast<Eigen::Index>(2 * q + 1)) << a, c, d;
     }
     quads.values = vertex_strains(sphere);
-    scene.legend = "largest strain of edges";
+    scene.legend = "edge strain";
     scene.surfaces.push_back(std::move(quads));
     for (const std::vector<int>& line : grid_lines(sphere)) {
         io::CurvePiece curve;

@@ -16,7 +16,7 @@ namespace couture::meshing {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double default_hole_size = 0.005;
+constexpr double largest_default_hole = 0.02;
 constexpr double default_radius = 0.9;
 
 void require_positive(const char* what, double value) {
@@ -60,6 +60,20 @@ TriangleTree make_tree(const TriangleSoup& wall) {
         triangles.push_back({wall.points[a], wall.points[b], wall.points[c]});
     }
     return TriangleTree(std::move(triangles));
+}
+
+double default_hole_size(const TriangleSoup& wall, double diagonal) {
+    constexpr double part = 0.9;
+    std::vector<double> lengths;
+    for (const auto& triangle : wall.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            lengths.push_back(
+                (wall.points[triangle[k]] - wall.points[triangle[(k + 1) % 3]]).norm());
+        }
+    }
+    const auto nth = lengths.begin() + static_cast<std::ptrdiff_t>(part * (lengths.size() - 1));
+    std::ranges::nth_element(lengths, nth);
+    return std::min(*nth, largest_default_hole * diagonal);
 }
 
 /// Where the sphere is dropped.
@@ -185,16 +199,20 @@ class Inflation {
         }
     };
 
-    /// Where the vertex meets the wall: where its line does, if its ball has touched the wall not
-    /// long before, else where its ball does.
+    /// Where the vertex meets the wall: where its line does, if its ball, once it has touched the
+    /// wall, does not leave it before, as it would behind a hole; else where its ball touches.
     [[nodiscard]] double contact_radius(const TriangleTree& wall, const Vector3& direction,
                                         double ball_radius) const {
+        constexpr int n_samples = 8;
         const Vector3 from = start_.center + start_.radius * direction;
         const auto touch = wall.first_contact(from, direction, ball_radius);
         if (!touch) return infinity;
         const auto hit = wall.first_contact(from, direction, 0.0);
-        // The line meets a wall that it is inclined to by 30 degrees or more.
-        const bool is_wall = hit && *hit <= *touch + 2.0 * ball_radius;
+        bool is_wall = hit.has_value();
+        for (int k = 1; k < n_samples && is_wall; ++k) {
+            const Vector3 point = from + (*touch + (*hit - *touch) * k / n_samples) * direction;
+            is_wall = wall.nearest(point).squared_distance <= ball_radius * ball_radius;
+        }
         return start_.radius + (is_wall ? *hit : *touch);
     }
 
@@ -300,7 +318,10 @@ InflatedSphere inflate_sphere(const TriangleSoup& wall, const InflationOptions& 
     const TriangleTree tree = make_tree(wall);
     const auto [low, high] = tree.box();
     const double ball_radius =
-        0.5 * options.hole_size.value_or(default_hole_size * (high - low).norm());
+        0.5 * options.hole_size.value_or(default_hole_size(wall, (high - low).norm()));
+    if (!(ball_radius > 0.0)) {
+        throw GeometryError("inflate_sphere: the triangles of the wall are points; there is none");
+    }
     const Start start = find_start(tree, ball_radius, options);
     Inflation inflation(tree, start, ball_radius, options);
     inflation.run();

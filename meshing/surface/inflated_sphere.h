@@ -23,7 +23,9 @@ struct InflationOptions {
     /// Other limits where the middle of an edge is; the first that fits counts, before all others.
     std::vector<StrainRegion> regions = {};
     /// A ball of this diameter around a vertex touches the rim of holes that it does not fit
-    /// through, so that they count as wall; nothing: 0.5 % of the diagonal of the wall's box.
+    /// through, so that they count as wall; nothing: the length that nine tenths of the wall's
+    /// edges do not exceed, so that most missing triangles are no holes, and 2 % of the diagonal of
+    /// its box at most.
     std::optional<double> hole_size = std::nullopt;
 };
 

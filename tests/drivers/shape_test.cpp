@@ -211,8 +211,6 @@ TEST_CASE("shape: warns of mirror images and copies", "[drivers]") {
 TEST_CASE("shape inflate: twenty aneurysms, and a new one among them", "[drivers]") {
     const TemporaryFolder folder;
     constexpr int n_members = 20;
-    constexpr double most_seconds = 2.0;
-    std::string signature;
     for (int k = 0; k <= n_members; ++k) {
         const auto aneurysm = verification::make_synthetic_aneurysm(k);
         CAPTURE(aneurysm.name, verification::to_string(aneurysm.defect));
@@ -224,7 +222,6 @@ TEST_CASE("shape inflate: twenty aneurysms, and a new one among them", "[drivers
         CHECK(object["points"] == 1538);
         CHECK(object["contacts"].get<int>() > 1538 / 2);
         CHECK(object["max_strain"].get<double>() <= 3.0 + 1e-9);
-        CHECK(object["inflation_seconds"].get<double>() < most_seconds);
     }
     const Json object =
         run_json("shape population/*.vtp --project new/aneurysm_20_inflated.vtp --png --out shape",

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "meshing/surface/cube_sphere.h"
 #include "meshing/surface/inflated_sphere.h"
@@ -84,9 +85,10 @@ void aneurysms(Recorder& recorder) {
     double strain = 0.0;
     for (int k = 0; k <= n_members; ++k) {
         const SyntheticAneurysm aneurysm = make_synthetic_aneurysm(k);
-        const Timer timer;
+        const std::clock_t start = std::clock();
         const meshing::InflatedSphere inflated = meshing::inflate_sphere(aneurysm.surface, options);
-        slowest = std::max(slowest, timer.seconds());
+        const auto ticks = static_cast<double>(std::clock() - start);
+        slowest = std::max(slowest, ticks / CLOCKS_PER_SEC);
         n_equal += inflated.mesh.quads == sphere.quads ? 1 : 0;
         n_wrong += n_behind(inflated, aneurysm.surface);
         strain = std::max(strain, inflated.max_strain());
@@ -98,7 +100,7 @@ void aneurysms(Recorder& recorder) {
     recorder.set_source("[Maquart19] Eq. (5.1), corrected");
     recorder.vanishing("strain over its limit", std::max(strain - options.strain_limit, 0.0), 1e-9);
     recorder.set_source("[Maquart19] Sec. 5.2.3.3: a few seconds");
-    recorder.vanishing("seconds of the slowest", slowest, 2.0);
+    recorder.vanishing("seconds of processor time, the slowest", slowest, 2.0);
     const MatrixX other = shapes.back();
     shapes.pop_back();
     const rom::ShapeModel model = rom::make_shape_model(shapes);

@@ -102,35 +102,43 @@ TEST_CASE("inflate_sphere: stops at its strain limit, all at once", "[meshing]")
 
 TEST_CASE("inflate_sphere: a membrane closes an opening", "[meshing]") {
     const TriangleSoup wall = open_ball();
-    const double limit = GENERATE(1.2, 1.5, 3.0);
-    const InflatedSphere sphere =
-        inflate_sphere(wall, {.center = Vector3::Zero(), .radius = 1.0, .strain_limit = limit});
-    check_laws(sphere, wall, limit);
-    CHECK(sphere.n_free > 50);
-    CHECK(sphere.n_contacts() + sphere.n_free <= 6 * 16 * 16 + 2);
-    double highest = 0.0;
-    for (std::size_t v = 0; v < sphere.stops.size(); ++v) {
-        const Vector3 direction = sphere.mesh.points[v].normalized();
-        if (direction.z() < std::cos(0.6)) {
-            CHECK(sphere.stops[v] == InflationStop::contact);
-        } else if (direction.z() > std::cos(0.45)) {
-            CHECK(sphere.stops[v] == InflationStop::strain);
-            highest = std::max(highest, sphere.mesh.points[v].z());
+    double last_height = 0.0;
+    for (const double limit : {1.1, 1.5, 3.0}) {
+        const InflatedSphere sphere =
+            inflate_sphere(wall, {.center = Vector3::Zero(), .radius = 1.0, .strain_limit = limit});
+        check_laws(sphere, wall, limit);
+        CHECK(sphere.n_free > 50);
+        CHECK(sphere.n_contacts() + sphere.n_free <= 6 * 16 * 16 + 2);
+        double height = 0.0;
+        for (std::size_t v = 0; v < sphere.stops.size(); ++v) {
+            const Vector3 direction = sphere.mesh.points[v].normalized();
+            if (direction.z() < std::cos(0.6)) {
+                CHECK(sphere.stops[v] == InflationStop::contact);
+            } else if (direction.z() > std::cos(0.45)) {
+                CHECK(sphere.stops[v] == InflationStop::strain);
+                height = std::max(height, sphere.mesh.points[v].z());
+            }
         }
+        // All of it is out of the opening, and the farther the more strain there may be.
+        CHECK(height > 2.0);
+        CHECK(height > last_height);
+        last_height = height;
     }
-    // The more strain, the farther out.
-    CHECK(highest == Approx(limit == 1.2 ? 2.2 : limit == 1.5 ? 2.6 : 5.0).epsilon(0.2));
 }
 
 TEST_CASE("inflate_sphere: does not see copies, turned triangles and fins outside", "[meshing]") {
     TriangleSoup wall = open_ball();
-    const InflationOptions options{.center = Vector3(0.1, 0.2, 0.0), .radius = 1.0};
+    InflationOptions options{.center = Vector3(0.1, 0.2, 0.0), .radius = 1.0};
+    // The fins change the box that the default is a part of.
+    options.hole_size = 0.05;
     const InflatedSphere clean = inflate_sphere(wall, options);
     const std::size_t n = wall.triangles.size();
     for (std::size_t t = 0; t < n; t += 3) wall.triangles.push_back(wall.triangles[t]);
     for (std::size_t t = 0; t < n; t += 5) std::swap(wall.triangles[t][0], wall.triangles[t][1]);
+    // Away from the opening, where the membrane would meet them.
     for (std::size_t t = 0; t < n; t += 7) {
         const auto [a, b, c] = wall.triangles[t];
+        if (wall.points[a].z() > 0.0) continue;
         wall.points.emplace_back(1.2 * wall.points[a]);
         wall.triangles.push_back({a, b, static_cast<int>(wall.points.size()) - 1});
     }
