@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/reduced_model_bench.h"
 #include "iga/linalg/machine_limits.h"
 
 namespace couture::drivers {
@@ -59,6 +60,7 @@ struct BenchResult {
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
     std::vector<CuttingRow> cuts;
+    std::vector<EvaluationRow> evaluations;
 };
 
 [[nodiscard]] BenchResult run_benchmarks(const BenchOptions& options);

@@ -245,6 +245,22 @@ CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& s
     return cuboids;
 }
 
+// Faces of the surface that no side of a cuboid belongs to.
+void warn_of_lost_faces(const NamedFaces& faces,
+                        const std::map<std::string, std::vector<CuboidSide>>& sets) {
+    std::vector<std::string> lost;
+    for (const std::string& name : faces.names) {
+        const auto set = sets.find(name);
+        if (set == sets.end() || set->second.empty()) lost.push_back(name);
+    }
+    if (lost.empty()) return;
+    log::warn(
+        fmt::format("mesh: no side of a cuboid lies on the faces {}: there are no sets of these "
+                    "names; a layout "
+                    "with cuboids at them would have them",
+                    io::quoted_list(lost)));
+}
+
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
                      const std::vector<io::SurfaceLine>& lines) {
     const SurfaceMesh& mesh = stages.mesh;
@@ -335,6 +351,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
         // What is left if mesh_solid throws.
         stages.solid.emplace().cuboids = cuboids;
         stages.solid = mesh_solid(std::move(cuboids), solid);
+        if (solid.faces) warn_of_lost_faces(*solid.faces, stages.solid->cuboids.volume.sets);
     };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
@@ -342,6 +359,12 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
         return;
     }
     std::optional<ClosingCaps> caps = surface.caps;
+    if (last > MeshStage::pants && stages.invariants.n_components > 1) {
+        throw InputError(
+            "mesh: the surface has {} shells: cuboids are made of one, without cavities; take one "
+            "(shell), or stop at stage pants",
+            stages.invariants.n_components);
+    }
     if (last > MeshStage::pants) {
         if (!caps) caps = fill_boundaries(stages.mesh);
         if (options.cycle == CriterionWeights{}) options.cycle.sharp = clear_of_sharp_edges;

@@ -64,8 +64,10 @@ std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const Layo
             half -= l;
             if (half <= 0.0) break;
         }
+        constexpr double most_of_sheet = 1e6;
         elements.push_back(
-            std::max(options.min_elements, static_cast<int>(std::lround(median / size))));
+            std::max(options.min_elements,
+                     static_cast<int>(std::min(std::round(median / size), most_of_sheet))));
     }
     return elements;
 }
@@ -79,10 +81,29 @@ std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& c
     return of_arcs;
 }
 
+// @throws InputError  if there are more elements than can be worked on
+void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements,
+                      double element_size) {
+    constexpr double most_elements = 2e6;
+    double n_elements = 0.0;
+    for (const std::array<int, 12>& edges : cells.cuboid_edges) {
+        double product = 1.0;
+        for (const int k : {0, 4, 8}) product *= elements[cells.sheets[edges[k]]];
+        n_elements += product;
+    }
+    if (n_elements > most_elements) {
+        throw InputError(
+            "mesh: an element size of {:.3g} makes {:.3g} elements, at most {:.0g} are; take a "
+            "larger one",
+            element_size, n_elements, most_elements);
+    }
+}
+
 // Decides on elements and on names of outer sides.
 void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
                      const SolidMeshOptions& options) {
     cuboids.record.elements = elements_by_size(cuboids, cells, options);
+    check_n_elements(cells, cuboids.record.elements, options.element_size);
     if (!options.faces) return;
     for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
         std::vector<CuboidSide>& set = cuboids.volume.sets[name];

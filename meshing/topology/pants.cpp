@@ -103,10 +103,10 @@ class Decomposer {
     void cut_handles_of(int shell) {
         if (shells_[shell].genus == 0) return;
         report("looking for handle and tunnel loops", 0.0);
-        const bool has_pants = is_cut_into_pants(shells_[shell]);
+        const bool is_cut = is_cut_into_pants(shells_[shell]) || options_.cuts_tori;
         HandleCutOptions options{.first_given = n_boundaries_,
-                                 .only_given = options_.only_given_loops && has_pants,
-                                 .cuts = has_pants || options_.cuts_tori};
+                                 .only_given = options_.only_given_loops && is_cut,
+                                 .cuts = is_cut};
         if (!cycle_criterion_.is_plain_length()) {
             options.tightened = [&](const SurfaceCurve& curve) { return tightened(curve); };
         }
@@ -147,8 +147,11 @@ class Decomposer {
                 throw InputError("pants: {} = {}; it must be positive", name, value);
             }
         }
-        const bool has_pants = std::any_of(shells_.begin(), shells_.end(), is_cut_into_pants);
-        if (!has_pants && !(options_.loops.empty() && options_.cycles_through.empty())) {
+        const bool is_cut =
+            std::any_of(shells_.begin(), shells_.end(), [&](const SurfaceInvariants& shell) {
+                return is_cut_into_pants(shell) || (options_.cuts_tori && shell.genus > 0);
+            });
+        if (!is_cut && !(options_.loops.empty() && options_.cycles_through.empty())) {
             throw InputError(
                 "pants: loops or points are given, but the surface has Euler characteristic {}: a "
                 "sphere, disc, cylinder or torus is not cut into pants",
