@@ -136,10 +136,10 @@ TEST_CASE("schema: the JSON of shape has the keys and types that are documented"
     const tests::TemporaryFolder folder;
     for (const int k : {100, 110, 130, 150}) {
         const std::string length = std::to_string(k);
-        const auto result =
-            tests::run_couture("mesh cube --set length=" + length +
-                                   " --stage volume --element-size 60 --out " + length,
-                               folder.path());
+        const auto result = tests::run_couture("mesh cube --set length=" + length +
+                                                   " --stage volume --element-size " +
+                                                   std::to_string(3 * k / 5) + " --out " + length,
+                                               folder.path());
         REQUIRE(result.exit_code == 0);
     }
     const bool has_volumes = GENERATE(true, false);
