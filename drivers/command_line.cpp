@@ -112,6 +112,12 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");
     sub->add_flag("--png", eval->png, "draw the deformed part");
 
+    const auto exported = std::make_shared<RomExportOptions>();
+    sub = add_command(*rom, command, "export", "write a page that answers in a browser",
+                      [&command, exported] { return run_rom_export(*exported, command.common); });
+    sub->add_option("model", exported->model, "the model (.rom)")->required();
+    sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+
     const auto validate = std::make_shared<RomValidateOptions>();
     sub = add_command(*rom, command, "validate", "compare a model with full solutions",
                       [&command, validate] { return run_rom_validate(*validate, command.common); });

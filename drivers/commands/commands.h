@@ -103,6 +103,12 @@ struct RomEvalOptions {
     bool png = false;
 };
 
+struct RomExportOptions {
+    std::filesystem::path model;
+    /// The page that is written.
+    std::filesystem::path html;
+};
+
 struct RomValidateOptions {
     /// Its deck, folder and processes are those of the model's training.
     RomTrainOptions campaign;
@@ -141,6 +147,7 @@ int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to
                 const CommonOptions& common);
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
 int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
+int run_rom_export(const RomExportOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
