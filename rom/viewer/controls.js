@@ -43,7 +43,7 @@ export class ParameterControl {
     const place = (value) => `calc(8px + (100% - 16px) * ${(value - low) / (high - low)})`;
     const box = element("div", { class: "box", title: "where the model learned",
       style: `left: ${place(one.lower)}; right: calc(100% - ${place(one.upper).slice(4)})` });
-    const mark = (value) => element("span", {}, `${format(value)}${unit}`);
+    const mark = (value) => element("span", { style: `left: ${place(value)}` }, `${format(value)}${unit}`);
     this.root = element("div", { class: "parameter" },
       element("div", { class: "row" }, element("label", { for: id }, one.name),
         element("span", {}, this.number, element("span", { class: "unit" }, unit))),

@@ -50,14 +50,14 @@ function showNumbers() {
   const expected = answer.errors;
   const row = (name, value) => element("tr", {}, element("td", {}, name), element("td", {}, value));
   const error = (relative) => (expected ? ` ± ${format(100 * relative(expected), 2)} %` : "");
-  const rows = [row("largest displacement",
+  const rows = [row("displacement, largest",
     `${format(answer.displacement_max)} ${length}${error((e) => e.displacement.relative)}`)];
   if (!model.no_stress) {
-    rows.push(row("largest von Mises", `${format(answer.von_mises_max)} ${stress}${error((e) => e.von_mises)}`));
+    rows.push(row("von Mises, largest", `${format(answer.von_mises_max)} ${stress}${error((e) => e.von_mises)}`));
   }
   if (expected) {
-    rows.push(row("standard error of displacement", `${format(expected.displacement.kriging, 2)} ${length}`));
-    rows.push(row("standard error of geometry", `${format(expected.geometry.kriging, 2)} ${length}`));
+    rows.push(row("displacement, std. error", `${format(expected.displacement.kriging, 2)} ${length}`));
+    rows.push(row("geometry, std. error", `${format(expected.geometry.kriging, 2)} ${length}`));
   }
   $("answers").tBodies[0].replaceChildren(...rows);
   const outside = controls.filter((control) => control.outside() > 1e-9);
@@ -147,7 +147,7 @@ function makePicture() {
   const size = Math.hypot(...extents);
   unitScale = answer.displacement_max > 0 ? size / 12 / answer.displacement_max : 1;
   unitScale = Number(unitScale.toPrecision(1));
-  camera = new Camera(low.map((l, i) => (l + high[i]) / 2), size / 2, extents);
+  camera = new Camera(low.map((l, i) => (l + high[i]) / 2), 0.56 * size, extents);
   try {
     renderer = new Renderer($("view"), surface.nPoints, { triangles, edges }, model.colors);
   } catch (error) {

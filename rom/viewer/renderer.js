@@ -27,7 +27,7 @@ void main() {
   float key = max(dot(n, normalize(vec3(0.35, 0.55, 0.75))), 0.0);
   float fill = max(dot(n, normalize(vec3(-0.6, -0.1, 0.6))), 0.0);
   float shine = pow(max(dot(n, normalize(vec3(0.2, 0.3, 1.0))), 0.0), 60.0);
-  color = vec4(base * (0.42 + 0.5 * key + 0.18 * fill) + 0.12 * shine, 1.0);
+  color = vec4(base * (0.5 + 0.5 * key + 0.2 * fill) + 0.12 * shine, 1.0);
 }`;
 
 const lineVertex = `#version 300 es

@@ -46,25 +46,24 @@ function contractA(grid, net, count, lines) {
   }
 }
 
-/** Along the second, of one point: [value, slope across, slope along a, slope along b][field]. */
-function contractB(grid, lines, count, pa, pb, out) {
+/** Along the second, at a line of points: [point of a][value, slope across, slope along a][field], and slopes along b. */
+function contractB(grid, lines, count, pb, row, slopes) {
   const { n_active: nActive, starts, values, derivatives } = grid.b;
-  out.fill(0, 0, 4 * count);
+  const length = 3 * count * grid.a.n_points;
+  row.fill(0, 0, length);
+  slopes.fill(0, 0, count * grid.a.n_points);
   for (let j = 0; j < nActive; ++j) {
-    const from = ((starts[pb] + j) * grid.a.n_points + pa) * 3 * count;
+    const from = (starts[pb] + j) * length;
     const N = values[pb * nActive + j];
     const dN = derivatives[pb * nActive + j];
-    for (let f = 0; f < count; ++f) {
-      const v = lines[from + f];
-      out[f] += N * v;
-      out[count + f] += N * lines[from + count + f];
-      out[2 * count + f] += N * lines[from + 2 * count + f];
-      out[3 * count + f] += dN * v;
+    for (let i = 0; i < length; ++i) row[i] += N * lines[from + i];
+    for (let i = 0, at = from; at < from + length; at += 3 * count) {
+      for (let f = 0; f < count; ++f, ++i) slopes[i] += dN * lines[at + f];
     }
   }
 }
 
-/** Rows of the stiffness of an isotropic material that are not its constants. */
+/** 6 x 6, row by row; Voigt order 11, 22, 33, 23, 13, 12. */
 export function isotropicStiffness(E, nu) {
   const lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
   const mu = E / (2 * (1 + nu));
@@ -76,38 +75,29 @@ export function isotropicStiffness(E, nu) {
   return C;
 }
 
-const strain = new Float64Array(6);
-const stress = new Float64Array(6);
-
 /** Von Mises stress from slopes of position and displacement by the parameters, at 6, 12, 18 of q. */
 function vonMises(q, C) {
   // J = [t0 t1 t2]; rows of its inverse are cross products of its columns over det J.
-  const [ax, ay, az] = [q[6], q[7], q[8]];
-  const [bx, by, bz] = [q[12], q[13], q[14]];
-  const [cx, cy, cz] = [q[18], q[19], q[20]];
+  const ax = q[6], ay = q[7], az = q[8];
+  const bx = q[12], by = q[13], bz = q[14];
+  const cx = q[18], cy = q[19], cz = q[20];
   const r0x = by * cz - bz * cy, r0y = bz * cx - bx * cz, r0z = bx * cy - by * cx;
   const r1x = cy * az - cz * ay, r1y = cz * ax - cx * az, r1z = cx * ay - cy * ax;
   const r2x = ay * bz - az * by, r2y = az * bx - ax * bz, r2z = ax * by - ay * bx;
   const inverse = 1 / (ax * r0x + ay * r0y + az * r0z);
-  const [u0, u1, u2] = [q[9] * inverse, q[15] * inverse, q[21] * inverse];
-  const [v0, v1, v2] = [q[10] * inverse, q[16] * inverse, q[22] * inverse];
-  const [w0, w1, w2] = [q[11] * inverse, q[17] * inverse, q[23] * inverse];
-  strain[0] = u0 * r0x + u1 * r1x + u2 * r2x;
-  strain[1] = v0 * r0y + v1 * r1y + v2 * r2y;
-  strain[2] = w0 * r0z + w1 * r1z + w2 * r2z;
-  strain[3] = v0 * r0z + v1 * r1z + v2 * r2z + w0 * r0y + w1 * r1y + w2 * r2y;
-  strain[4] = u0 * r0z + u1 * r1z + u2 * r2z + w0 * r0x + w1 * r1x + w2 * r2x;
-  strain[5] = u0 * r0y + u1 * r1y + u2 * r2y + v0 * r0x + v1 * r1x + v2 * r2x;
-  for (let i = 0; i < 6; ++i) {
-    let sum = 0;
-    for (let j = 0; j < 6; ++j) sum += C[6 * i + j] * strain[j];
-    stress[i] = sum;
-  }
-  const d0 = stress[0] - stress[1];
-  const d1 = stress[1] - stress[2];
-  const d2 = stress[2] - stress[0];
-  return Math.sqrt(0.5 * (d0 * d0 + d1 * d1 + d2 * d2) +
-    3 * (stress[3] * stress[3] + stress[4] * stress[4] + stress[5] * stress[5]));
+  const u0 = q[9] * inverse, u1 = q[15] * inverse, u2 = q[21] * inverse;
+  const v0 = q[10] * inverse, v1 = q[16] * inverse, v2 = q[22] * inverse;
+  const w0 = q[11] * inverse, w1 = q[17] * inverse, w2 = q[23] * inverse;
+  const e0 = u0 * r0x + u1 * r1x + u2 * r2x;
+  const e1 = v0 * r0y + v1 * r1y + v2 * r2y;
+  const e2 = w0 * r0z + w1 * r1z + w2 * r2z;
+  const e3 = v0 * r0z + v1 * r1z + v2 * r2z + w0 * r0y + w1 * r1y + w2 * r2y;
+  const e4 = u0 * r0z + u1 * r1z + u2 * r2z + w0 * r0x + w1 * r1x + w2 * r2x;
+  const e5 = u0 * r0y + u1 * r1y + u2 * r2y + v0 * r0x + v1 * r1x + v2 * r2x;
+  const s = (i) => C[i] * e0 + C[i + 1] * e1 + C[i + 2] * e2 + C[i + 3] * e3 + C[i + 4] * e4 + C[i + 5] * e5;
+  const s0 = s(0), s1 = s(6), s2 = s(12), s3 = s(18), s4 = s(24), s5 = s(30);
+  const d0 = s0 - s1, d1 = s1 - s2, d2 = s2 - s0;
+  return Math.sqrt(0.5 * (d0 * d0 + d1 * d1 + d2 * d2) + 3 * (s3 * s3 + s4 * s4 + s5 * s5));
 }
 
 /** The grids with their results, grid by grid, the first direction fastest. */
@@ -117,14 +107,18 @@ export class Surface {
     this.nPoints = 0;
     let largestNet = 0;
     let largestLines = 0;
+    let longest = 0;
     for (const grid of grids) {
       grid.first = this.nPoints;
       this.nPoints += grid.a.n_points * grid.b.n_points;
       largestNet = Math.max(largestNet, grid.a.n_functions * grid.b.n_functions);
       largestLines = Math.max(largestLines, grid.a.n_points * grid.b.n_functions);
+      longest = Math.max(longest, grid.a.n_points);
     }
     this.net = new Float64Array(2 * nFields * largestNet);
     this.lines = new Float64Array(3 * nFields * largestLines);
+    this.row = new Float64Array(3 * nFields * longest);
+    this.slopes = new Float64Array(nFields * longest);
     this.point = new Float64Array(4 * nFields);
     for (const grid of grids) if (grid.weights) grid.denominators = this.denominators(grid);
     this.x = new Float64Array(3 * this.nPoints);
@@ -141,9 +135,12 @@ export class Surface {
     contractA(grid, this.net, 1, this.lines);
     const { n_points: na } = grid.a;
     const result = new Float64Array(4 * na * grid.b.n_points);
-    for (let i = 0; 4 * i < result.length; ++i) {
-      contractB(grid, this.lines, 1, i % na, Math.floor(i / na), this.point);
-      result.set(this.point.subarray(0, 4), 4 * i);
+    for (let pb = 0, at = 0; pb < grid.b.n_points; ++pb) {
+      contractB(grid, this.lines, 1, pb, this.row, this.slopes);
+      for (let pa = 0; pa < na; ++pa, at += 4) {
+        result.set(this.row.subarray(3 * pa, 3 * pa + 3), at);
+        result[at + 3] = this.slopes[pa];
+      }
     }
     return result;
   }
@@ -168,9 +165,12 @@ export class Surface {
   evaluatePoints(grid, C) {
     const q = this.point;
     const na = grid.a.n_points;
+    const { row, slopes } = this;
     for (let pb = 0, i = grid.first, local = 0; pb < grid.b.n_points; ++pb) {
+      contractB(grid, this.lines, nFields, pb, row, slopes);
       for (let pa = 0; pa < na; ++pa, ++i, ++local) {
-        contractB(grid, this.lines, nFields, pa, pb, q);
+        for (let k = 0; k < 3 * nFields; ++k) q[k] = row[3 * nFields * pa + k];
+        for (let f = 0; f < nFields; ++f) q[3 * nFields + f] = slopes[nFields * pa + f];
         if (grid.denominators) this.divide(grid.denominators, 4 * local);
         for (let c = 0; c < 3; ++c) {
           this.x[3 * i + c] = q[c];
