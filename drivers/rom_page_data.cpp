@@ -11,6 +11,18 @@ namespace {
 /// Largest number of cells per element and direction.
 constexpr int most_cells = 4;
 
+void set_grids(io::PageContent& content, const iga::Space<3>& space, int most_points) {
+    for (content.n_cells = most_cells;; --content.n_cells) {
+        content.grids =
+            rom::make_sample_grids(space, rom::SampleRegion::outer_sides, content.n_cells);
+        int n_points = 0;
+        for (const rom::SampleGrid& grid : content.grids) {
+            n_points += grid.n_points();
+        }
+        if (content.n_cells == 1 || n_points <= most_points) return;
+    }
+}
+
 struct IsotropicConstants {
     double youngs_modulus = 0.0;
     double poissons_ratio = 0.0;
@@ -91,18 +103,6 @@ std::string why_other_stiffness(const TrainedModel& trained,
 
 }  // namespace
 
-std::vector<rom::SampleGrid> page_grids(const iga::Space<3>& space, int most_points) {
-    for (int n_cells = most_cells;; --n_cells) {
-        std::vector<rom::SampleGrid> grids =
-            rom::make_sample_grids(space, rom::SampleRegion::outer_sides, n_cells);
-        int n_points = 0;
-        for (const rom::SampleGrid& grid : grids) {
-            n_points += grid.n_points();
-        }
-        if (n_cells == 1 || n_points <= most_points) return grids;
-    }
-}
-
 io::PageContent page_content(const TrainedModel& trained, int most_points) {
     const rom::ReducedModel& model = trained.model();
     const VectorX& reference = model.parts().reference_point;
@@ -112,7 +112,7 @@ io::PageContent page_content(const TrainedModel& trained, int most_points) {
     const auto [length, force, pressure] = deck.units.unit_names();
     content.length_unit = length;
     content.stress_unit = pressure;
-    content.grids = page_grids(*model.space(), most_points);
+    set_grids(content, *model.space(), most_points);
     content.no_stress = why_no_stress(deck.problem);
     if (!content.no_stress.empty()) return content;
     for (const iga::Material& material : deck.problem.materials) {

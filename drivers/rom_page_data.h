@@ -11,7 +11,4 @@ namespace couture::drivers {
 /// Poisson's ratio of an isotropic material. Where that does not hold, `no_stress` says why.
 [[nodiscard]] io::PageContent page_content(const TrainedModel& trained, int most_points = 12'000);
 
-/// Grids of a page of a model, as in page_content.
-[[nodiscard]] std::vector<rom::SampleGrid> page_grids(const iga::Space<3>& space, int most_points);
-
 }  // namespace couture::drivers

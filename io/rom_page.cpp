@@ -1,7 +1,9 @@
 #include "io/rom_page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "iga/core/error.h"
@@ -64,7 +66,7 @@ Json rounded(const VectorX& mode, double largest) {
     return object;
 }
 
-/// @param shares  largest value of each mode times its largest coefficient
+/// @param share  largest value of the mode times its largest coefficient
 Json mode_json(const VectorX& mode, double share, double largest_share) {
     // Rounding to n steps on both sides of zero is off by half a step.
     const double allowed = mode_tolerance * largest_share;

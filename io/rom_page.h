@@ -32,6 +32,8 @@ struct PageContent {
     std::string stress_unit;
     /// Points of outer sides: one parameter in the direction that each is normal to.
     std::vector<rom::SampleGrid> grids;
+    /// Of these per element and direction; largest values are those at the ends of elements.
+    int n_cells = 1;
     std::vector<PageMaterial> materials;
     /// For each patch.
     std::vector<int> material_of_patch;

@@ -14,9 +14,10 @@ function addModes(part, a, factor, values) {
   if (factor !== 1) for (let i = 0; i < values.length; ++i) values[i] *= factor;
 }
 
-function largest(values) {
+/** Of some points. */
+function largest(values, points) {
   let most = -Infinity;
-  for (let i = 0; i < values.length; ++i) if (values[i] > most) most = values[i];
+  for (let i = 0; i < points.length; ++i) if (values[points[i]] > most) most = values[points[i]];
   return most;
 }
 
@@ -43,6 +44,7 @@ export class Evaluator {
   constructor(model) {
     this.model = model;
     this.surface = new Surface(model.grids);
+    this.ends = Int32Array.from(this.surface.elementEnds(model.n_cells));
     this.x = new Float64Array(3 * model.n_nodes);
     this.u = new Float64Array(3 * model.n_nodes);
   }
@@ -75,7 +77,10 @@ export class Evaluator {
     return ofPatch.map((i) => C[i]);
   }
 
-  /** Geometry, displacement and stress on the surface, into `surface`. */
+  /**
+   * Geometry, displacement and stress on the surface, into `surface`; the largest values are those at
+   * ends of elements, as `rom eval`.
+   */
   evaluate(point) {
     const { geometry, displacement, models } = this.model;
     const unit = this.unit(point);
@@ -86,8 +91,8 @@ export class Evaluator {
     addModes(displacement, b, this.factor(point), this.u);
     this.surface.evaluate(this.x, this.u, this.stiffnesses(point));
     return {
-      geometry_coefficients: a, coefficients: b, displacement_max: largest(this.surface.magnitude),
-      von_mises_max: this.model.no_stress ? null : largest(this.surface.vonMises)
+      geometry_coefficients: a, coefficients: b, displacement_max: largest(this.surface.magnitude, this.ends),
+      von_mises_max: this.model.no_stress ? null : largest(this.surface.vonMises, this.ends)
     };
   }
 

@@ -211,7 +211,7 @@ function setUp() {
   const trust = model.n_validated > 0
     ? `Expected errors are calibrated with ${model.n_validated} full solutions.`
     : "Expected errors are not calibrated yet (couture rom validate does it).";
-  $("note").textContent = `${stress}Largest values are those on the surface. ${trust}`;
+  $("note").textContent = `${stress}Largest values are those at corners of elements on the surface. ${trust}`;
   $("origin").textContent = `${model.program}; ${surface.nPoints} points, ${model.displacement.modes.length} displacement modes.`;
   $("quantity").addEventListener("change", () => { $("hold").checked = false; colored(); });
   $("hold").addEventListener("change", colored);

@@ -195,6 +195,12 @@ export class Surface {
     }
   }
 
+  /** Numbers of the points at ends of elements, with `n` cells per element and direction. */
+  elementEnds(n) {
+    return this.grids.flatMap(({ first, a, b }) => Array.from({ length: a.n_points * b.n_points }, (_, i) => first + i)
+      .filter((i) => ((i - first) % a.n_points) % n === 0 && Math.floor((i - first) / a.n_points) % n === 0));
+  }
+
   /** Deformed positions and their normals, for drawing. */
   deform(scale, positions, normals) {
     const t = this.tangents;
