@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/mesh_bench.h"
 #include "drivers/reduced_model_bench.h"
 #include "iga/linalg/machine_limits.h"
 
@@ -60,6 +61,7 @@ struct BenchResult {
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
     std::vector<CuttingRow> cuts;
+    std::vector<MeshingRow> meshing;
     std::vector<EvaluationRow> evaluations;
 };
 

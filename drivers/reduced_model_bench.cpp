@@ -89,7 +89,7 @@ double seconds_of(int n_calls, const Call& call) {
 }
 
 EvaluationRow measure(int n_elements, int n_modes, int n_calls) {
-    rom::ReducedModel model = random_cube(n_elements, n_modes);
+    const rom::ReducedModel model = random_cube(n_elements, n_modes);
     const rom::FieldSampler sampler(model.space(), {equidistant_grid(n_elements + 3)});
     iga::Problem problem;
     problem.materials = {iga::make_isotropic("steel", 1.0, 0.3)};
@@ -101,10 +101,6 @@ EvaluationRow measure(int n_elements, int n_modes, int n_calls) {
     double sum = 0.0;
     row.fields_seconds =
         seconds_of(n_calls, [&](int i) { sum += model.evaluate(point(i)).displacement[0]; });
-    model.use_single_precision(true);
-    row.single_fields_seconds =
-        seconds_of(n_calls, [&](int i) { sum += model.evaluate(point(i)).displacement[0]; });
-    model.use_single_precision(false);
     row.samples_seconds = seconds_of(n_calls, [&](int) {
         sum += sampler.sample(there.control_points, there.displacement, problem).von_mises[0];
     });
@@ -135,17 +131,13 @@ std::vector<EvaluationRow> measure_evaluations(bool quick) {
 std::string evaluation_text(const std::vector<EvaluationRow>& rows) {
     std::string text =
         "\nReduced model: evaluation, one thread, processor time; milliseconds per point\n"
-        "  modes  unknowns  samples  fields  single  samples  both  in single  batch  errors  "
-        "gradient\n";
+        "  modes  unknowns  samples  fields  samples  both  fields in batch  errors  gradient\n";
     for (const EvaluationRow& row : rows) {
         text += fmt::format(
-            "  {:5}  {:8}  {:7}  {:6.3f}  {:6.3f}  {:7.3f}  {:4.2f}  {:9.2f}  {:5.2f}  {:6.3f}  "
-            "{:8.2f}\n",
+            "  {:5}  {:8}  {:7}  {:6.3f}  {:7.3f}  {:4.2f}  {:15.3f}  {:6.3f}  {:8.2f}\n",
             row.n_modes, row.n_unknowns, row.n_samples, 1e3 * row.fields_seconds,
-            1e3 * row.single_fields_seconds, 1e3 * row.samples_seconds,
-            1e3 * (row.fields_seconds + row.samples_seconds),
-            1e3 * (row.single_fields_seconds + row.samples_seconds), 1e3 * row.batch_seconds,
-            1e3 * row.errors_seconds, 1e3 * row.gradient_seconds);
+            1e3 * row.samples_seconds, 1e3 * (row.fields_seconds + row.samples_seconds),
+            1e3 * row.batch_seconds, 1e3 * row.errors_seconds, 1e3 * row.gradient_seconds);
     }
     return text;
 }

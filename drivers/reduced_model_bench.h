@@ -13,9 +13,8 @@ struct EvaluationRow {
     int n_modes = 0;
     int n_unknowns = 0;
     int n_samples = 0;
-    /// Coefficients, control points and displacement; with modes in single precision.
+    /// Coefficients, control points and displacement.
     double fields_seconds = 0.0;
-    double single_fields_seconds = 0.0;
     /// Position, displacement, stress and von Mises stress of all samples.
     double samples_seconds = 0.0;
     /// The fields again, 64 points at once.

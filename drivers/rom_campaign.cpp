@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "drivers/rom_model.h"
 #include "drivers/worker_processes.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
@@ -100,6 +101,24 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
         log::warn(fmt::format("rom: refused: {}: {}", one.point, one.reason));
     }
     return true;
+}
+
+std::optional<TrainedFile> train_model(const RomTrainOptions& options, const CommonOptions& common,
+                                       RomSamples& samples, io::SnapshotStore& store) {
+    use_rom_threads(common);
+    samples.take_added(store);
+    const auto reference = samples.make_reference(store);
+    samples.check_factored(reference);
+    if (!run_campaign(options, common, samples, *reference, store, {"rom", "train"})) return {};
+    TrainedFile trained{rom::ReducedModel(read_snapshots(samples, *reference, store),
+                                          model_options(samples.section())),
+                        rom_folder(options) / (options.deck.stem().string() + ".rom")};
+    for (const rom::FieldModel& field : trained.model.parts().models) {
+        if (const auto message = field.missing_modes()) log::warn("rom: " + *message);
+    }
+    io::write_reduced_model(trained.file,
+                            {trained.model, samples.text(), model_provenance(samples)});
+    return trained;
 }
 
 }  // namespace couture::drivers

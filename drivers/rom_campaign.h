@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/commands/commands.h"
 #include "drivers/rom_training.h"
+#include "rom/reduced_model.h"
 
 namespace couture::drivers {
 
@@ -25,5 +27,18 @@ int use_rom_threads(const CommonOptions& common);
 bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, RomSamples& samples,
                   const iga::Space<3>& reference, io::SnapshotStore& store,
                   const std::vector<std::string>& command);
+
+struct TrainedFile {
+    rom::ReducedModel model;
+    std::filesystem::path file;
+};
+
+/// Makes all that a store lacks of the deck's design and of what was added to it, learns the model
+/// and writes it beside the store.
+///
+/// @return nothing if that was a shard
+[[nodiscard]] std::optional<TrainedFile> train_model(const RomTrainOptions& options,
+                                                     const CommonOptions& common,
+                                                     RomSamples& samples, io::SnapshotStore& store);
 
 }  // namespace couture::drivers

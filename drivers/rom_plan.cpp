@@ -53,6 +53,12 @@ VectorX RomPlan::point(int i_geometry, int i_load, int i_material) const {
     return space.from_unit(unit);
 }
 
+void RomPlan::add_geometries(const MatrixX& points) {
+    MatrixX all(geometry_points.rows() + points.rows(), geometry_points.cols());
+    all << geometry_points, points;
+    geometry_points = std::move(all);
+}
+
 RomPlan make_rom_plan(const io::RomSection& section) {
     RomPlan plan{section.space(),
                  section.inputs(rom::ParameterGroup::geometry),

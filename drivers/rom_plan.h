@@ -26,6 +26,8 @@ struct RomPlan {
     [[nodiscard]] int n_snapshots() const { return n_geometries() * n_loads() * n_materials(); }
     /// Of all parameters, in their units.
     [[nodiscard]] VectorX point(int i_geometry, int i_load, int i_material) const;
+    /// Appends points of the geometry. @param points  n x parameters of the group, unit cube
+    void add_geometries(const MatrixX& points);
 };
 
 /// The designs of a deck's section [rom]: that of the geometry, and all combinations of the levels

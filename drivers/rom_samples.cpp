@@ -134,6 +134,13 @@ RomSamples::RomSamples(const std::filesystem::path& path, const std::vector<std:
       plan_(make_rom_plan(checked_section(deck_))),
       solver_(iga::make_linear_solver(deck_.solver)) {}
 
+void RomSamples::take_added(const io::SnapshotStore& store) {
+    plan_ = make_rom_plan(section());
+    const MatrixX added = store.added_points(static_cast<int>(plan_.geometry.size()));
+    n_added_ = static_cast<int>(added.rows());
+    plan_.add_geometries(added);
+}
+
 std::string RomSamples::job() const {
     const auto hash_of = [](const std::filesystem::path& file) {
         return file.empty() ? std::string() : text_hash(io::read_text(file));
@@ -154,14 +161,15 @@ std::string RomSamples::job() const {
         }
         return list;
     };
-    const nlohmann::ordered_json job = {{"program", "couture " COUTURE_VERSION},
-                                        {"model", text_hash(deck_.model_text)},
-                                        {"geometry file", hash_of(deck_.geometry.file)},
-                                        {"meshing deck", hash_of(deck_.geometry.mesh)},
-                                        {"parameters", parameters},
-                                        {"geometry points", rows(plan_.geometry_points)},
-                                        {"load points", rows(plan_.load_points)},
-                                        {"material points", rows(plan_.material_points)}};
+    const nlohmann::ordered_json job = {
+        {"program", "couture " COUTURE_VERSION},
+        {"model", text_hash(deck_.model_text)},
+        {"geometry file", hash_of(deck_.geometry.file)},
+        {"meshing deck", hash_of(deck_.geometry.mesh)},
+        {"parameters", parameters},
+        {"geometry points", rows(plan_.geometry_points.topRows(plan_.n_geometries() - n_added_))},
+        {"load points", rows(plan_.load_points)},
+        {"material points", rows(plan_.material_points)}};
     return job.dump(1) + "\n";
 }
 

@@ -24,8 +24,13 @@ class RomSamples {
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
     [[nodiscard]] const io::RomSection& section() const { return *deck_.rom; }
     [[nodiscard]] const RomPlan& plan() const { return plan_; }
+    /// Takes over the geometries that were added to a store of the deck's design.
+    void take_added(const io::SnapshotStore& store);
     /// From now on other points than the deck's design.
-    void use(RomPlan plan) { plan_ = std::move(plan); }
+    void use(RomPlan plan) {
+        plan_ = std::move(plan);
+        n_added_ = 0;
+    }
     /// What snapshots depend on, as JSON: model, design, files, version of the program.
     [[nodiscard]] std::string job() const;
 
@@ -66,6 +71,8 @@ class RomSamples {
     std::string text_;
     io::Deck deck_;
     RomPlan plan_;
+    // The last of its geometries, which the job knows nothing of.
+    int n_added_ = 0;
     // Its pattern and order are those of all members.
     std::unique_ptr<iga::LinearSolver> solver_;
 };

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kind = "snapshot";
 constexpr int version = 1;
 constexpr const char* plan_name = "plan.json";
+constexpr const char* added_name = "added_points.json";
 constexpr const char* failed = ".failed";
 
 std::string geometry_name(int i_geometry) { return fmt::format("geometry_{:04}", i_geometry); }
@@ -154,6 +155,30 @@ void SnapshotStore::write_matrix(const std::string& name, const MatrixX& values,
         content = image_of(store);
     }
     write_text(file(name + ".h5"), pack_hdf5(kind, version, content));
+}
+
+MatrixX SnapshotStore::added_points(int n_parameters) const {
+    const fs::path path = file(added_name);
+    if (!fs::exists(path)) return MatrixX::Zero(0, n_parameters);
+    const auto rows = nlohmann::json::parse(read_text(path), nullptr, false);
+    MatrixX points(static_cast<Eigen::Index>(rows.size()), n_parameters);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const auto& row = rows[i];
+        if (!row.is_array() || static_cast<int>(row.size()) != n_parameters) {
+            throw FileError("{}: row {} does not hold {} numbers", path.string(), i, n_parameters);
+        }
+        for (int k = 0; k < n_parameters; ++k) points(i, k) = row[k].get<double>();
+    }
+    return points;
+}
+
+void SnapshotStore::write_added_points(const MatrixX& points) {
+    auto rows = nlohmann::json::array();
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const VectorX row = points.row(i);
+        rows.push_back(std::vector<double>(row.begin(), row.end()));
+    }
+    write_text(file(added_name), rows.dump(1) + "\n");
 }
 
 std::optional<std::string> SnapshotStore::failure(const std::string& name) const {

@@ -19,6 +19,7 @@ namespace couture::io {
 ///   geometry_0003.h5        control points of geometry 3, n_nodes x 3
 ///   solution_0003_01.h5     displacements of geometry 3 with material 1, 3 n_nodes x n_loads
 ///   geometry_0003.failed, solution_0003_01.failed    why there is none
+///   added_points.json       geometries that were added to the design, numbered after its own
 ///   timings.csv             what was made when, by the clock; beside the point of the rest
 ///
 /// Matrices are packed HDF5 as spline files are, "Couture snapshot 1": data set /values (columns x
@@ -55,6 +56,12 @@ class SnapshotStore {
                         const std::string& signature);
     void write_solution(int i_geometry, int i_material, const MatrixX& displacements,
                         const std::string& signature);
+
+    /// Geometries beside those of the design, in the unit cube, n x parameters; in
+    /// added_points.json.
+    /// @throws FileError  if it can't be read as such
+    [[nodiscard]] MatrixX added_points(int n_parameters) const;
+    void write_added_points(const MatrixX& points);
 
     /// Why a sample was refused; nothing if it was not.
     [[nodiscard]] std::optional<std::string> geometry_failure(int i_geometry) const;

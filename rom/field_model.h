@@ -20,7 +20,9 @@ class FieldModel {
   public:
     /// Learns from fields at the points of a design. Refused fields leave the design: it stays a
     /// tensor product if they are all those of some points of its factors, else it becomes one
-    /// factor. Without inputs (no factors) the one field is the mean.
+    /// factor; kriging's lengths are then those of the points of the first factor without
+    /// refused fields, if these are at least half of the points. Without inputs (no
+    /// factors) the one field is the mean.
     ///
     /// @param fields  n_values x n_points; columns of NaN are refused ones
     /// @param mean    n_values
@@ -39,6 +41,8 @@ class FieldModel {
     /// Says so if there are fewer modes than were asked for.
     [[nodiscard]] std::optional<std::string> missing_modes() const;
 
+    /// The field of coefficients, one pass through the modes.
+    [[nodiscard]] VectorX field(const VectorX& coefficients) const;
     /// Fields of coefficients: n_values x n_fields. @param coefficients  n_modes x n_fields
     [[nodiscard]] MatrixX fields(const MatrixX& coefficients) const;
     /// Standard errors of the values of a field from the variances of its coefficients.

@@ -92,7 +92,8 @@ GalerkinSolution galerkin_newton_step(const ReducedModel& model, const Evaluatio
 
     // Columns of one length: modes that depend on each other show in the pivots.
     MatrixX V = body.free_modes(model.displacement_modes());
-    V *= V.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const VectorX lengths = V.colwise().norm().cwiseMax(1e-300);
+    V *= lengths.cwiseInverse().asDiagonal();
     const MatrixX KV = body.tangent_times(V);
     Eigen::ColPivHouseholderQR<MatrixX> projected(V.transpose() * KV);
     constexpr double rounding = 1e-12;

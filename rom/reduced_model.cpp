@@ -1,6 +1,5 @@
 #include "rom/reduced_model.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "iga/assembly/assembler.h"
@@ -252,42 +251,6 @@ MatrixX ReducedModel::part_of(const FieldPart& part, MatrixX fields) const {
     return part.values(std::move(fields), n_components(parts_.options));
 }
 
-namespace {
-
-/// values += modes * coefficients, a block of rows after the other so that their sums stay near.
-void add_modes(const Eigen::MatrixXf& modes, const VectorX& coefficients, double* values) {
-    constexpr Eigen::Index block = 512;
-    for (Eigen::Index first = 0; first < modes.rows(); first += block) {
-        const Eigen::Index n = std::min(block, modes.rows() - first);
-        for (Eigen::Index k = 0; k < modes.cols(); ++k) {
-            const double a = coefficients[k];
-            const float* mode = &modes(first, k);
-            for (Eigen::Index i = 0; i < n; ++i) {
-                values[first + i] += a * static_cast<double>(mode[i]);
-            }
-        }
-    }
-}
-
-}  // namespace
-
-void ReducedModel::use_single_precision(bool is_single) {
-    single_modes_.clear();
-    for (std::size_t i = 0; is_single && i < parts_.models.size(); ++i) {
-        single_modes_.emplace_back(parts_.models[i].basis().modes.cast<float>());
-    }
-}
-
-MatrixX ReducedModel::field(int i_model, const VectorX& coefficients) const {
-    const FieldModel& model = parts_.models[i_model];
-    if (single_modes_.empty()) {
-        return model.fields(coefficients);
-    }
-    MatrixX values = model.mean();
-    add_modes(single_modes_[i_model], coefficients, values.data());
-    return values;
-}
-
 Evaluation ReducedModel::evaluate(const VectorX& point) const {
     const VectorX unit = unit_point(point);
     Evaluation evaluation;
@@ -297,14 +260,14 @@ Evaluation ReducedModel::evaluate(const VectorX& point) const {
     evaluation.geometry_coefficients = coefficients(parts_.geometry, unit);
     evaluation.displacement_coefficients =
         is_stacked() ? evaluation.geometry_coefficients : coefficients(parts_.displacement, unit);
-    MatrixX first = field(parts_.geometry.i_model, evaluation.geometry_coefficients);
+    VectorX first = model_of(parts_.geometry).field(evaluation.geometry_coefficients);
     if (is_stacked()) {
         evaluation.control_points = part_of(parts_.geometry, first);
         evaluation.displacement = part_of(parts_.displacement, std::move(first));
     } else {
         evaluation.control_points = std::move(first);
         evaluation.displacement =
-            field(parts_.displacement.i_model, evaluation.displacement_coefficients);
+            model_of(parts_.displacement).field(evaluation.displacement_coefficients);
     }
     evaluation.displacement *= evaluation.factor;
     return evaluation;

@@ -97,10 +97,6 @@ class ReducedModel {
     }
     /// Of the reference member: the functions that all members share.
     [[nodiscard]] const iga::SpacePtr<3>& space() const { return space_; }
-    /// Lets `evaluate` read modes rounded to single precision (kept beside the others), sums in
-    /// double precision: half of the memory is read, which is what evaluations wait for. Each
-    /// mode's values change by 6e-8 of theirs at most.
-    void use_single_precision(bool is_single);
     /// Factors of the error estimates, from validation.
     void set_calibration(const Calibration& calibration) { parts_.calibration = calibration; }
 
@@ -141,8 +137,6 @@ class ReducedModel {
     [[nodiscard]] double factor(const VectorX& point) const;
     [[nodiscard]] VectorX coefficients(const FieldPart& part, const VectorX& unit_point) const;
     [[nodiscard]] VectorX variances(const FieldPart& part, const VectorX& unit_point) const;
-    /// The field of a model with these coefficients.
-    [[nodiscard]] MatrixX field(int i_model, const VectorX& coefficients) const;
     /// Rows of fields of a model that a part has, scaled.
     [[nodiscard]] MatrixX part_of(const FieldPart& part, MatrixX fields) const;
     /// d field / d parameters of a part, at the reference values of the factored ones.
@@ -152,8 +146,6 @@ class ReducedModel {
     iga::SpacePtr<3> space_;
     /// For each field model.
     std::vector<std::vector<int>> input_parameters_;
-    /// Modes of each field model, or none.
-    std::vector<Eigen::MatrixXf> single_modes_;
 };
 
 }  // namespace couture::rom

@@ -109,6 +109,21 @@ struct RomExportOptions {
     std::filesystem::path html;
 };
 
+struct RomEnrichOptions {
+    RomTrainOptions campaign;
+    /// Wanted relative error of the displacement, as the model expects it.
+    double tolerance = 0.01;
+    /// Geometries that are added at most.
+    int max_points = 20;
+};
+
+struct RomMergeOptions {
+    /// Deck, settings and folder of the store that takes the others' snapshots.
+    RomTrainOptions campaign;
+    /// Of shards that were made apart.
+    std::vector<std::filesystem::path> folders;
+};
+
 struct RomValidateOptions {
     /// Its deck, folder and processes are those of the model's training.
     RomTrainOptions campaign;
@@ -148,6 +163,8 @@ int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
 int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
 int run_rom_export(const RomExportOptions& options, const CommonOptions& common);
+int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common);
+int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);

@@ -88,27 +88,15 @@ void print_table(const RomSamples& samples, const io::SnapshotStore& store,
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common) {
     const Timer timer;
     RomSamples samples(options.deck, options.overrides);
-    const fs::path folder = rom_folder(options);
-    io::SnapshotStore store(folder / "snapshots", samples.job());
+    io::SnapshotStore store(rom_folder(options) / "snapshots", samples.job());
     if (options.retry) store.clear_failures();
-    use_rom_threads(common);
-    const auto reference = samples.make_reference(store);
-    samples.check_factored(reference);
-    if (!run_campaign(options, common, samples, *reference, store, {"rom", "train"})) {
-        return ExitCode::done;
-    }
-    const rom::ReducedModel model(read_snapshots(samples, *reference, store),
-                                  model_options(samples.section()));
-    for (const rom::FieldModel& field : model.parts().models) {
-        if (const auto message = field.missing_modes()) log::warn("rom: " + *message);
-    }
-    const fs::path file = folder / (options.deck.stem().string() + ".rom");
-    io::write_reduced_model(file, {model, samples.text(), model_provenance(samples)});
-    const auto bases = summarize(model);
+    const auto trained = train_model(options, common, samples, store);
+    if (!trained) return ExitCode::done;
+    const auto bases = summarize(trained->model);
     if (common.json) {
-        print_json(samples, store, bases, model, file, timer.seconds());
+        print_json(samples, store, bases, trained->model, trained->file, timer.seconds());
     } else if (!common.quiet) {
-        print_table(samples, store, bases, model, file, timer.seconds());
+        print_table(samples, store, bases, trained->model, trained->file, timer.seconds());
     }
     return progress_of(samples.plan(), store).n_refused > 0 ? ExitCode::run_failed : ExitCode::done;
 }

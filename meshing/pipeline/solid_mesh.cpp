@@ -40,13 +40,15 @@ void check_options(const SolidMeshOptions& options) {
     }
 }
 
-// Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
-// weighted by these lengths, over the wanted size.
+// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the
+// surface, weighted by these lengths, over the wanted size.
 std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
                                   const SolidMeshOptions& options) {
     const double size = options.element_size > 0.0 ? options.element_size
                                                    : bounding_box_diagonal(cuboids.mesh) / 20.0;
-    const std::vector<double> lengths = arc_lengths(cuboids.mesh, cuboids.surface);
+    const std::vector<double> lengths = cuboids.arc_lengths.empty()
+                                            ? arc_lengths(cuboids.mesh, cuboids.surface)
+                                            : cuboids.arc_lengths;
     std::vector<std::vector<double>> of_sheet(cells.n_sheets());
     const QuadLayout& layout = cuboids.surface.layout;
     for (int a = 0; a < layout.n_arcs(); ++a) {
@@ -64,8 +66,10 @@ std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const Layo
             half -= l;
             if (half <= 0.0) break;
         }
+        constexpr double most_of_sheet = 1e6;
         elements.push_back(
-            std::max(options.min_elements, static_cast<int>(std::lround(median / size))));
+            std::max(options.min_elements,
+                     static_cast<int>(std::min(std::round(median / size), most_of_sheet))));
     }
     return elements;
 }
@@ -79,10 +83,29 @@ std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& c
     return of_arcs;
 }
 
+// @throws InputError  if there are more elements than can be worked on
+void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements,
+                      double element_size) {
+    constexpr double most_elements = 2e6;
+    double n_elements = 0.0;
+    for (const std::array<int, 12>& edges : cells.cuboid_edges) {
+        double product = 1.0;
+        for (const int k : {0, 4, 8}) product *= elements[cells.sheets[edges[k]]];
+        n_elements += product;
+    }
+    if (n_elements > most_elements) {
+        throw InputError(
+            "mesh: an element size of {:.3g} makes {:.3g} elements, at most {:.0g} are; take a "
+            "larger one",
+            element_size, n_elements, most_elements);
+    }
+}
+
 // Decides on elements and on names of outer sides.
 void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
                      const SolidMeshOptions& options) {
     cuboids.record.elements = elements_by_size(cuboids, cells, options);
+    check_n_elements(cells, cuboids.record.elements, options.element_size);
     if (!options.faces) return;
     for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
         std::vector<CuboidSide>& set = cuboids.volume.sets[name];
@@ -91,20 +114,32 @@ void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
     cuboids.record.sets = cuboids.volume.sets;
 }
 
+// In words, where the grid turns against the surface.
+std::string place_of_worst(const SurfaceMesh& mesh, const LayoutSamples& samples) {
+    const std::optional<TurnedCorner> worst = worst_turned_corner(samples, mesh);
+    if (!worst) return "";
+    return fmt::format(", the worst near ({:.6g}, {:.6g}, {:.6g}) in the quad of nodes {}",
+                       worst->place.x(), worst->place.y(), worst->place.z(),
+                       samples.layout.quad_name(worst->quad));
+}
+
 // Nodes in better places.
 void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     const EmbeddedLayout& surface = solid.cuboids.surface;
     NodeRelocationOptions relocation;
     relocation.max_iterations = options.max_relocations;
+    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
+    for (std::size_t a = 0; a < lengths.size(); ++a) {
+        relocation.cell_lengths.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
+    }
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
-            "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
+            "mesh: {} corners of quads stay turned over on the surface{}: the cuboids are too "
             "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
-            "loop) "
-            "or templates help, or smaller elements",
-            relocated.report.n_inverted);
+            "loop) or templates help, other places of a layout's nodes, or smaller elements",
+            relocated.report.n_inverted, place_of_worst(mesh, relocated.samples));
     }
     solid.relocation = relocated.report;
     solid.quads = std::move(relocated.samples);

@@ -213,6 +213,35 @@ class Decomposer {
         return factor;
     }
 
+    // The same for a cycle through vertices of the mesh: a sharp edge that passes two of them is
+    // followed, whatever the criterion says of others.
+    [[nodiscard]] std::vector<double> factors_through(const CutSurface& piece,
+                                                      const std::set<int>& vertices) const {
+        const auto features_at = [&](int v) {
+            std::set<int> features;
+            for (const auto edge : mesh_.ve_range(VertexHandle(v))) {
+                if (mesh_.data(edge).feature >= 0) features.insert(mesh_.data(edge).feature);
+            }
+            return features;
+        };
+        std::map<int, int> n_vertices;
+        for (const int v : vertices) {
+            for (const int feature : features_at(v)) ++n_vertices[feature];
+        }
+        std::erase_if(n_vertices, [](const auto& entry) { return entry.second < 2; });
+        std::vector<double> factor = factors(piece);
+        if (n_vertices.empty()) return factor;
+        factor.resize(piece.n_vertices(), 1.0);
+        const double followed = 0.5 * *std::ranges::min_element(factor);
+        for (int v = 0; v < piece.n_vertices(); ++v) {
+            const std::set<int> features = features_at(piece.parent(v));
+            if (std::ranges::any_of(features, [&](int f) { return n_vertices.contains(f); })) {
+                factor[v] = followed;
+            }
+        }
+        return factor;
+    }
+
     // Factors of the merge's criterion at the vertices of a cycle; splits take the mean of the
     // ends.
     [[nodiscard]] double score(const HomotopicCycle& cycle) const {
@@ -403,7 +432,7 @@ class Decomposer {
                     loops.size() < 4 ? "they lie in a pant already"
                                      : "a curve divides them from each other");
             }
-            const HomotopicCycles cycles(piece, factors(piece), inside);
+            const HomotopicCycles cycles(piece, factors_through(piece, wanted), inside);
             const PantsCurves::Sides sides = curves_.sides_of(piece, cycles.loops());
             for (std::size_t i = 0; i < sides.size(); ++i) {
                 for (std::size_t j = i + 1; j < sides.size(); ++j) {

@@ -126,14 +126,44 @@ TEST_CASE("rom: stores and models are the same however the work was split", "[dr
                                           " rom train f.toml --out c --quiet; true"));
     }
     REQUIRE(run_couture("rom train f.toml --out c", folder.path()).exit_code == 0);
+    // Two shards apart, put together.
+    REQUIRE(run_couture("rom train f.toml --shard 1/2 --out d1", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("rom train f.toml --shard 2/2 --out d2", folder.path()).exit_code == 0);
+    const auto merged = run_couture("rom merge f.toml d1 d2 --out d", folder.path());
+    REQUIRE(merged.exit_code == 0);
+    CHECK_THAT(merged.output, Contains("15 of 15 solutions"));
+    CHECK(run_couture("rom merge f.toml nowhere --out d", folder.path()).exit_code == 2);
+    REQUIRE(run_couture("rom train f.toml --out d", folder.path()).exit_code == 0);
     const auto snapshots = contents(folder.path() / "a/snapshots");
     CHECK(snapshots.size() == 22);
-    for (const char* other : {"b", "c"}) {
+    for (const char* other : {"b", "c", "d"}) {
         CAPTURE(other);
         CHECK((contents(folder.path() / other / "snapshots") == snapshots));
         CHECK((io::read_text(folder.path() / other / "f.rom") ==
                io::read_text(folder.path() / "a/f.rom")));
     }
+}
+
+TEST_CASE("rom: samples are added until the expected error is small", "[drivers]") {
+    const TemporaryFolder folder;
+    std::string coarse = deck;
+    coarse.replace(coarse.find("samples = 5"), 11, "samples = 3");
+    io::write_text(folder.path() / "f.toml", coarse);
+    run_json("rom train f.toml", folder.path());
+    const Json before = run_json("rom validate f.toml -n 6", folder.path());
+    const auto enriched =
+        run_couture("rom enrich f.toml --tolerance 1e-3 --max-points 8", folder.path());
+    CAPTURE(enriched.errors, enriched.output);
+    CHECK_THAT(enriched.output, Contains("geometries were added"));
+    const Json after = run_json("rom validate f.toml -n 6", folder.path());
+    CHECK(after["errors"]["displacement"]["worst"].get<double>() <
+          0.5 * before["errors"]["displacement"]["worst"].get<double>());
+    // What was added stays part of the model.
+    const Json trained = run_json("rom train f.toml", folder.path());
+    CHECK(trained["geometries"] > 3);
+    CHECK(
+        run_couture("rom enrich f.toml --tolerance 1e-9 --max-points 1", folder.path()).exit_code ==
+        1);
 }
 
 TEST_CASE("rom: samples that can't be made are listed and left out", "[drivers]") {

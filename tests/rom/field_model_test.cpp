@@ -93,6 +93,39 @@ TEST_CASE("FieldModel: refused fields are left out", "[rom]") {
                       Catch::Contains("all 12 fields were refused"));
 }
 
+TEST_CASE("FieldModel: lengths of a design with holes are those of its complete part", "[rom]") {
+    MatrixX fields = bilinear_fields(grid().points());
+    refuse(fields, 4);
+    const FieldModel model(grid(), fields, mean, InnerProduct(3));
+    const CoefficientModel& coefficients = model.coefficients();
+    // All but the second row of the grid, of which points 3 and 5 are left.
+    const std::vector<int> positions = {0, 1, 2, 5, 6, 7, 8, 9, 10};
+    const CoefficientModel part(accepted_design(grid(), {0, 1, 2, 6, 7, 8, 9, 10, 11}),
+                                coefficients.training()(positions, Eigen::all),
+                                coefficients.options());
+    REQUIRE(part.design().sizes() == std::vector<int>{3, 3});
+    for (int k = 0; k < 3; ++k) {
+        CHECK(coefficients.parameters()[k].lengths == part.parameters()[k].lengths);
+        CHECK(coefficients.parameters()[k].nugget >= part.parameters()[k].nugget);
+        CHECK(coefficients.parameters()[k].nugget <= 1e-5);
+    }
+    // Points of the incomplete row count all the same.
+    for (const int i : {3, 5}) {
+        const VectorX point = grid().points().row(i);
+        const double error = (model.field(coefficients.values(point)) - fields.col(i)).norm();
+        const double without = (model.field(part.values(point)) - fields.col(i)).norm();
+        CHECK(error < 0.1 * without);
+    }
+    SECTION("too little is complete: all points are searched") {
+        for (const int column : {0, 7, 10}) {
+            refuse(fields, column);
+        }
+        const FieldModel sparse(grid(), fields, mean, InnerProduct(3));
+        CHECK(sparse.coefficients().design().sizes() == std::vector<int>{8});
+        CHECK(sparse.n_modes() == 3);
+    }
+}
+
 TEST_CASE("FieldModel: without inputs the field is constant", "[rom]") {
     const VectorX field = VectorX::LinSpaced(n_values, 3.0, 4.0);
     const FieldModel model({}, field, mean, InnerProduct(3));
@@ -106,6 +139,17 @@ TEST_CASE("FieldModel: fields that do not vary", "[rom]") {
     CHECK(model.basis().rank == 0);
     CHECK((VectorX(model.fields(model.coefficients().values(Vector2(0.2, 0.9)))) - mean).norm() <
           1e-12);
+}
+
+TEST_CASE("FieldModel: one field is as several", "[rom]") {
+    const MatrixX fields = random_design(12, n_values, 9);
+    for (const int n_modes : {1, 4, 7, 11}) {
+        const FieldModel model(grid(), fields, mean, InnerProduct(3),
+                               {.pod = {.n_modes = n_modes}});
+        const MatrixX coefficients = random_design(2, n_modes, 4);
+        const MatrixX both = model.fields(coefficients);
+        CHECK((model.field(coefficients.col(1)) - both.col(1)).norm() < 1e-13 * both.norm());
+    }
 }
 
 TEST_CASE("FieldModel: standard errors of values", "[rom]") {

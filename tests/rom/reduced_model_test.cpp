@@ -159,18 +159,6 @@ TEST_CASE("ReducedModel: several points at once", "[rom]") {
     }
 }
 
-TEST_CASE("ReducedModel: in single precision", "[rom]") {
-    ReducedModel model = GENERATE_REF(std::cref(separate()), std::cref(stacked())).get();
-    const Evaluation exact = model.evaluate(somewhere());
-    model.use_single_precision(true);
-    const Evaluation rounded = model.evaluate(somewhere());
-    CHECK(rounded.displacement != exact.displacement);
-    CHECK(relative_error(rounded.displacement, exact.displacement) < 1e-6);
-    CHECK(relative_error(rounded.control_points, exact.control_points) < 1e-6);
-    model.use_single_precision(false);
-    CHECK(model.evaluate(somewhere()).displacement == exact.displacement);
-}
-
 TEST_CASE("ReducedModel: ranks are at most those of the design", "[rom]") {
     const SnapshotSet set = random_family();
     const ReducedModelOptions asked{.n_modes = 12};
