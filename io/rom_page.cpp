@@ -297,6 +297,7 @@ Json page_json(const rom::ReducedModel& model, const PageContent& content) {
         {"title", content.title},
         {"units", {{"length", content.length_unit}, {"stress", content.stress_unit}}},
         {"no_stress", content.no_stress},
+        {"n_cells", content.n_cells},
         {"n_nodes", nodes.size()},
         {"n_validated", parts.calibration.n_points},
         {"von_mises_calibration", parts.calibration.von_mises},
