@@ -163,6 +163,12 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");
     sub->add_flag("--png", eval->png, "draw the deformed part");
 
+    const auto exported = std::make_shared<RomExportOptions>();
+    sub = add_command(*rom, command, "export", "write a page that answers in a browser",
+                      [&command, exported] { return run_rom_export(*exported, command.common); });
+    sub->add_option("model", exported->model, "the model (.rom)")->required();
+    sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+
     const auto enrich = std::make_shared<RomEnrichOptions>();
     sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",
                       [&command, enrich] { return run_rom_enrich(*enrich, command.common); });

@@ -1,7 +1,6 @@
 #include "drivers/result_picture.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "drivers/summary.h"
 #include "iga/core/error.h"
@@ -51,15 +50,10 @@ VectorX coefficients_of(const std::string& quantity, const MatrixX& displacement
     return values;
 }
 
-/// "von_mises [MPa]": systems of units are named by length, force and pressure.
+/// "von_mises [MPa]"
 std::string legend_of(const std::string& quantity, bool is_elasticity,
                       const io::UnitSystem& units) {
-    const std::string system = units.name() == "SI" ? "m N Pa" : units.name();
-    std::istringstream words(system);
-    std::string length;
-    std::string force;
-    std::string pressure;
-    words >> length >> force >> pressure;
+    const auto [length, force, pressure] = units.unit_names();
     const io::Dimension dimension = io::find_quantity(quantity, is_elasticity)->dimension;
     if (dimension == io::dimensions::pressure) {
         return quantity + " [" + pressure + "]";

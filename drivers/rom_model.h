@@ -19,6 +19,8 @@ class TrainedModel {
     [[nodiscard]] const rom::ReducedModel& model() const { return file_.model; }
     [[nodiscard]] const io::ReducedModelFile& file() const { return file_; }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Of the deck that it was trained by.
+    [[nodiscard]] const io::RomSection& section() const { return section_; }
     /// The deck that it was trained by, if it is still where it was.
     [[nodiscard]] std::filesystem::path deck_path() const;
     [[nodiscard]] std::vector<std::string> overrides() const;

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -266,6 +267,13 @@ UnitSystem::UnitSystem(const std::string& name) : name_(name) {
         known += fmt::format("{}'{}'", known.empty() ? "" : ", ", system.name);
     }
     throw InputError("unknown system of units '{}'; there are {}", name, known);
+}
+
+std::array<std::string, 3> UnitSystem::unit_names() const {
+    std::istringstream words(name_ == "SI" ? "m N Pa" : name_);
+    std::array<std::string, 3> names;
+    words >> names[0] >> names[1] >> names[2];
+    return names;
 }
 
 double UnitSystem::scale(const Dimension& dimension) const {

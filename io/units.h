@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -54,6 +55,8 @@ class UnitSystem {
     explicit UnitSystem(const std::string& name = "mm N MPa");
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    /// "mm", "N", "MPa": its length, force and pressure.
+    [[nodiscard]] std::array<std::string, 3> unit_names() const;
     /// One of this system's units of that dimension in metre, newton, second, kelvin.
     [[nodiscard]] double scale(const Dimension& dimension) const;
 

@@ -24,6 +24,8 @@ class CoefficientModel {
     /// Those learned from, n_points x n_coefficients.
     [[nodiscard]] const MatrixX& training() const { return training_; }
     [[nodiscard]] std::vector<KrigingParameters> parameters() const;
+    /// Of each coefficient; none without inputs.
+    [[nodiscard]] const std::vector<Kriging>& models() const { return models_; }
 
     /// All coefficients at a point. @param point  n_inputs values, in the unit cube where learned
     [[nodiscard]] VectorX values(const VectorX& point) const;

@@ -70,6 +70,8 @@ class Kriging {
     [[nodiscard]] const VectorX& weights() const { return weights_; }
     /// Of the functions 1, then of the inputs if the trend is linear.
     [[nodiscard]] const VectorX& trend_coefficients() const { return beta_; }
+    /// Of the process, that correlations multiply.
+    [[nodiscard]] double process_variance() const { return variance_; }
     /// @param point  n_parameters values; outside the unit cube it extrapolates
     [[nodiscard]] Prediction predict(const VectorX& point) const;
     /// predict(point).value at little cost.

@@ -91,6 +91,10 @@ class ReducedModel {
     [[nodiscard]] const ReducedModelParts& parts() const { return parts_; }
     [[nodiscard]] const ParameterSpace& parameters() const { return parts_.parameters; }
     [[nodiscard]] int n_nodes() const { return space_->n_dofs(); }
+    /// The parameters that are inputs of a field model, in their order.
+    [[nodiscard]] const std::vector<int>& input_parameters(int i_model) const {
+        return input_parameters_[i_model];
+    }
     /// Of the reference member: the functions that all members share.
     [[nodiscard]] const iga::SpacePtr<3>& space() const { return space_; }
     /// Factors of the error estimates, from validation.
@@ -140,7 +144,7 @@ class ReducedModel {
 
     ReducedModelParts parts_;
     iga::SpacePtr<3> space_;
-    /// For each field model the parameters that are its inputs, in their order.
+    /// For each field model.
     std::vector<std::vector<int>> input_parameters_;
 };
 

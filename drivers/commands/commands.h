@@ -103,6 +103,12 @@ struct RomEvalOptions {
     bool png = false;
 };
 
+struct RomExportOptions {
+    std::filesystem::path model;
+    /// The page that is written.
+    std::filesystem::path html;
+};
+
 struct RomEnrichOptions {
     RomTrainOptions campaign;
     /// Wanted relative error of the displacement, as the model expects it.
@@ -194,6 +200,7 @@ int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to
                 const CommonOptions& common);
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
 int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
+int run_rom_export(const RomExportOptions& options, const CommonOptions& common);
 int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common);
 int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);

@@ -1,0 +1,18 @@
+# Puts the page into one file: style and modules (in the order of their imports, whose lines go away)
+# into page.html. Sets COUTURE_PAGE.
+set(viewer_dir ${CMAKE_CURRENT_LIST_DIR})
+set(viewer_modules model kriging surface evaluator camera renderer controls main)
+set(viewer_script "")
+foreach(module ${viewer_modules})
+    file(READ ${viewer_dir}/${module}.js text)
+    string(REGEX REPLACE "\nimport [^;\n]*;" "" text "\n${text}")
+    string(REGEX REPLACE "\nexport " "\n" text "${text}")
+    string(APPEND viewer_script "${text}")
+endforeach()
+file(READ ${viewer_dir}/style.css viewer_style)
+file(READ ${viewer_dir}/page.html COUTURE_PAGE)
+string(REPLACE "/*COUTURE_STYLE*/" "${viewer_style}" COUTURE_PAGE "${COUTURE_PAGE}")
+string(REPLACE "/*COUTURE_SCRIPT*/" "${viewer_script}" COUTURE_PAGE "${COUTURE_PAGE}")
+list(TRANSFORM viewer_modules REPLACE "(.+)" "${viewer_dir}/\\1.js" OUTPUT_VARIABLE viewer_files)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+    ${viewer_dir}/page.html ${viewer_dir}/style.css ${viewer_files})

@@ -1,0 +1,115 @@
+// Answers of the model at a point of the parameters, as `couture rom eval`.
+import { coefficients, variances } from "./kriging.js";
+import { isotropicStiffness, Surface } from "./surface.js";
+
+/** mean + modes a, times a factor. */
+function addModes(part, a, factor, values) {
+  if (part.mean) values.set(part.mean);
+  else values.fill(0);
+  for (let k = 0; k < part.modes.length; ++k) {
+    const mode = part.modes[k];
+    const c = a[k];
+    for (let i = 0; i < mode.length; ++i) values[i] += c * mode[i];
+  }
+  if (factor !== 1) for (let i = 0; i < values.length; ++i) values[i] *= factor;
+}
+
+/** Of some points. */
+function largest(values, points) {
+  let most = -Infinity;
+  for (let i = 0; i < points.length; ++i) if (values[points[i]] > most) most = values[points[i]];
+  return most;
+}
+
+/** rom/field_part.h, estimate_error. */
+function estimateError(part, v, factor, length) {
+  const n = v.length;
+  let square = 0;
+  for (let k = 0; k < n; ++k) square += v[k] * part.gram[k * n + k];
+  const size = Math.abs(factor);
+  const kriging = size * Math.sqrt(square);
+  const total = part.calibration * Math.hypot(size * part.truncation, part.leave_one_out_ratio * kriging);
+  return { truncation: size * part.truncation, kriging, total, relative: length > 0 ? total / length : 0 };
+}
+
+/** rom/field_part.h, FieldPart::length. */
+function fieldLength(part, a) {
+  const n = a.length;
+  let square = 0;
+  for (let i = 0; i < n; ++i) for (let j = 0; j < n; ++j) square += a[i] * part.gram[i * n + j] * a[j];
+  return Math.sqrt(part.size * part.size + Math.max(0, square));
+}
+
+export class Evaluator {
+  constructor(model) {
+    this.model = model;
+    this.surface = new Surface(model.grids);
+    this.ends = Int32Array.from(this.surface.elementEnds(model.n_cells));
+    this.x = new Float64Array(3 * model.n_nodes);
+    this.u = new Float64Array(3 * model.n_nodes);
+  }
+
+  /** Values of all parameters: the reference member's where none is given. @param values  by name */
+  point(values = {}) {
+    return Float64Array.from(this.model.parameters, (one) => values[one.name] ?? one.reference);
+  }
+
+  unit(point) {
+    return this.model.parameters.map((one, i) => (point[i] - one.lower) / (one.upper - one.lower));
+  }
+
+  inputs(iModel, unit) {
+    return this.model.models[iModel].inputs.map((i) => unit[i]);
+  }
+
+  /** Product of the factored parameters' powers over that at the reference. */
+  factor(point) {
+    return this.model.parameters.reduce(
+      (product, one, i) => product * (point[i] / one.reference) ** one.factor_power, 1);
+  }
+
+  stiffnesses(point) {
+    const { materials, material_of_patch: ofPatch } = this.model;
+    if (this.model.no_stress) return null;
+    const modulus = (one) => (one.parameter === null ? one.value : one.value * point[one.parameter]);
+    const C = materials.map((one) =>
+      one.stiffness ?? isotropicStiffness(modulus(one.youngs_modulus), modulus(one.poissons_ratio)));
+    return ofPatch.map((i) => C[i]);
+  }
+
+  /**
+   * Geometry, displacement and stress on the surface, into `surface`; the largest values are those at
+   * ends of elements, as `rom eval`.
+   */
+  evaluate(point) {
+    const { geometry, displacement, models } = this.model;
+    const unit = this.unit(point);
+    const all = models.map((model, i) => coefficients(model, this.inputs(i, unit)));
+    const a = all[geometry.i_model];
+    const b = all[displacement.i_model];
+    addModes(geometry, a, 1, this.x);
+    addModes(displacement, b, this.factor(point), this.u);
+    this.surface.evaluate(this.x, this.u, this.stiffnesses(point));
+    return {
+      geometry_coefficients: a, coefficients: b, displacement_max: largest(this.surface.magnitude, this.ends),
+      von_mises_max: this.model.no_stress ? null : largest(this.surface.vonMises, this.ends)
+    };
+  }
+
+  /** Expected errors, and standard errors of the displacement's coefficients. */
+  errors(point) {
+    const { geometry, displacement, models } = this.model;
+    const unit = this.unit(point);
+    const of = (part, evaluate) => evaluate(models[part.i_model], this.inputs(part.i_model, unit));
+    const factor = this.factor(point);
+    const v = of(displacement, variances);
+    const length = Math.abs(factor) * fieldLength(displacement, of(displacement, coefficients));
+    const expected = estimateError(displacement, v, factor, length);
+    return {
+      geometry: estimateError(geometry, of(geometry, variances), 1, geometry.size),
+      displacement: expected,
+      von_mises: this.model.von_mises_calibration * expected.relative,
+      standard_errors: v.map(Math.sqrt)
+    };
+  }
+}
