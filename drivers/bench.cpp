@@ -225,6 +225,9 @@ BenchResult run_benchmarks(const BenchOptions& options) {
         log::info(fmt::format("loops and pants of genus 30, edges of {}", edge_length));
         result.cuts.push_back(measure_cutting("perforated", perforated_plate(edge_length)));
     }
+    result.meshing = measure_meshing(options.quick);
+    log::info("evaluation of reduced models");
+    result.evaluations = measure_evaluations(options.quick);
     return result;
 }
 
@@ -267,6 +270,17 @@ std::string bench_text(const BenchResult& result) {
                         microseconds_per_n_log_n(row.loops_cpu_seconds, row.n_triangles),
                         microseconds_per_n_log_n(row.pants_cpu_seconds, row.n_triangles));
     }
+    text +=
+        "\nMeshing: one thread, processor time of the whole way, without files\n"
+        "  part   task                 input  patches  elements  scaled J         s\n";
+    for (const MeshingRow& row : result.meshing) {
+        text += fmt::format(
+            "  {:5}  {:19}  {:6}  {:7}  {:8}  {:>8}  {:8.2f}\n", row.part, row.task, row.n_input,
+            row.n_patches, row.n_elements,
+            row.min_scaled_jacobian > 0.0 ? fmt::format("{:.3f}", row.min_scaled_jacobian) : "-",
+            row.cpu_seconds);
+    }
+    text += evaluation_text(result.evaluations);
     text += fmt::format("\nPeak memory of the process: {:.0f} MB\n", 1e-6 * peak_memory());
     return text;
 }
@@ -310,6 +324,27 @@ std::string bench_json(const BenchResult& result) {
                                    {"triangles", row.n_triangles},
                                    {"loops_cpu_seconds", row.loops_cpu_seconds},
                                    {"pants_cpu_seconds", row.pants_cpu_seconds}});
+    }
+    json["meshing"] = nlohmann::ordered_json::array();
+    for (const MeshingRow& row : result.meshing) {
+        json["meshing"].push_back({{"part", row.part},
+                                   {"task", row.task},
+                                   {"input", row.n_input},
+                                   {"patches", row.n_patches},
+                                   {"elements", row.n_elements},
+                                   {"min_scaled_jacobian", row.min_scaled_jacobian},
+                                   {"cpu_seconds", row.cpu_seconds}});
+    }
+    json["evaluation"] = nlohmann::ordered_json::array();
+    for (const EvaluationRow& row : result.evaluations) {
+        json["evaluation"].push_back({{"modes", row.n_modes},
+                                      {"unknowns", row.n_unknowns},
+                                      {"samples", row.n_samples},
+                                      {"fields_cpu_seconds", row.fields_seconds},
+                                      {"samples_cpu_seconds", row.samples_seconds},
+                                      {"batch_cpu_seconds", row.batch_seconds},
+                                      {"errors_cpu_seconds", row.errors_seconds},
+                                      {"gradient_cpu_seconds", row.gradient_seconds}});
     }
     json["peak_memory_bytes"] = peak_memory();
     return json.dump(2);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/mesh_bench.h"
+#include "drivers/reduced_model_bench.h"
 #include "iga/linalg/machine_limits.h"
 
 namespace couture::drivers {
@@ -59,6 +61,8 @@ struct BenchResult {
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
     std::vector<CuttingRow> cuts;
+    std::vector<MeshingRow> meshing;
+    std::vector<EvaluationRow> evaluations;
 };
 
 [[nodiscard]] BenchResult run_benchmarks(const BenchOptions& options);

@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 
 #include "drivers/summary.h"
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
+#include "iga/spline/knot_vector.h"
 #include "io/did_you_mean.h"
 
 namespace couture::drivers {
@@ -16,6 +18,7 @@ namespace couture::drivers {
 namespace {
 
 constexpr int max_threads = 1024;
+constexpr int most_hex_points = 1000;
 
 CLI::App* add_command(CLI::App& app, Command& command, const std::string& name,
                       const std::string& what, std::function<int()> run) {
@@ -75,6 +78,79 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
         io::quoted_list(names));
 }
 
+/// Of commands that make snapshots.
+void add_campaign_options(CLI::App* sub, RomTrainOptions& options, bool has_shards = true) {
+    sub->add_option("deck", options.deck, "the deck (TOML) with its section [rom]")->required();
+    sub->add_option("--set", options.overrides, "change a value of the deck: section.key=value")
+        ->allow_extra_args(false);
+    sub->add_option("--out", options.out, "folder of the results (default: out/<deck name>)");
+    sub->add_option("--jobs", options.n_jobs, "processes at once (default: as many as cores)")
+        ->check(CLI::Range(1, max_threads));
+    if (has_shards) {
+        sub->add_option("--shard", options.shard,
+                        "I/N: make only the I-th of N equal parts of the snapshots");
+    }
+    sub->add_flag("--retry", options.retry, "try samples again that were refused before");
+}
+
+/// `couture rom ...`
+void add_rom_commands(CLI::App& app, Command& command) {
+    CLI::App* rom = app.add_subcommand("rom", "reduced models: learn a family of solutions once");
+    rom->require_subcommand(1);
+    const auto train = std::make_shared<RomTrainOptions>();
+    CLI::App* sub =
+        add_command(*rom, command, "train", "solve the members of a deck's design, make a model",
+                    [&command, train] { return run_rom_train(*train, command.common); });
+    add_campaign_options(sub, *train);
+
+    const auto eval = std::make_shared<RomEvalOptions>();
+    sub = add_command(*rom, command, "eval", "answer at a point of the parameters",
+                      [&command, eval] { return run_rom_eval(*eval, command.common); });
+    sub->add_option("model", eval->model, "the model (.rom)")->required();
+    sub->add_option("--set", eval->settings,
+                    "a parameter: NAME=VALUE (default: the middle of its range)")
+        ->allow_extra_args(false);
+    sub->add_flag("--galerkin", eval->galerkin,
+                  "also project the full equations onto the modes, and say the residual");
+    sub->add_flag("--solve", eval->solve, "also solve in full, and say the error");
+    sub->add_flag("--force", eval->is_forced, "answer also far outside of the training box");
+    sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");
+    sub->add_flag("--png", eval->png, "draw the deformed part");
+
+    const auto enrich = std::make_shared<RomEnrichOptions>();
+    sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",
+                      [&command, enrich] { return run_rom_enrich(*enrich, command.common); });
+    add_campaign_options(sub, enrich->campaign, false);
+    sub->add_option("--tolerance", enrich->tolerance,
+                    "wanted relative error of displacements (default: 0.01)")
+        ->check(CLI::Range(1e-12, 1.0));
+    sub->add_option("--max-points", enrich->max_points, "geometries added at most (default: 20)")
+        ->check(CLI::Range(1, 100'000));
+
+    const auto merge = std::make_shared<RomMergeOptions>();
+    sub = add_command(*rom, command, "merge", "put snapshots together that were made apart",
+                      [&command, merge] { return run_rom_merge(*merge, command.common); });
+    sub->add_option("deck", merge->campaign.deck, "the deck that all were made by")->required();
+    sub->add_option("folders", merge->folders, "folders of shards (--out of couture rom train)")
+        ->required();
+    sub->add_option("--set", merge->campaign.overrides,
+                    "a value of the deck that was changed: section.key=value")
+        ->allow_extra_args(false);
+    sub->add_option("--out", merge->campaign.out,
+                    "folder that takes them over (default: out/<deck name>)");
+
+    const auto validate = std::make_shared<RomValidateOptions>();
+    sub = add_command(*rom, command, "validate", "compare a model with full solutions",
+                      [&command, validate] { return run_rom_validate(*validate, command.common); });
+    add_campaign_options(sub, validate->campaign);
+    constexpr int most_points = 100'000;
+    sub->add_option("-n,--points", validate->n_points, "points to compare at (default: 20)")
+        ->check(CLI::Range(2, most_points));
+    sub->add_option("--seed", validate->seed, "of the points (default: 1)");
+    sub->add_flag("--galerkin", validate->galerkin, "compare Galerkin solutions, too");
+    sub->add_flag("--png", validate->png, "draw plots, and the worst point");
+}
+
 void apply(const CommonOptions& common) {
     log::set_level(common.quiet     ? log::Level::warnings
                    : common.verbose ? log::Level::detail
@@ -111,8 +187,9 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     add_deck_options(sub, *solve);
 
     const auto mesh = std::make_shared<MeshOptions>();
-    sub = add_command(app, command, "mesh", "cut a surface into pants",
-                      [&command, mesh] { return run_mesh(*mesh, command.common); });
+    sub =
+        add_command(app, command, "mesh", "cut a surface into pants, and on to trivariate splines",
+                    [&command, mesh] { return run_mesh(*mesh, command.common); });
     sub->add_option(
            "surface", mesh->surface,
            "a surface file (.stl, .obj, .off, .ply, .vtp), the name of a part (wheel, ...), a "
@@ -125,7 +202,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
         "hexes");
     sub->add_option("--points", mesh->n_points,
                     "points per direction of the hexahedra in each patch (default: as many as "
-                    "control points)");
+                    "control points)")
+        ->check(CLI::Range(2, most_hex_points));
     add_surface_options(sub, *mesh);
     sub->add_option("--feature-angle", mesh->feature_angle,
                     "angle between faces from which an edge is sharp, in degrees (default: 40)");
@@ -147,8 +225,12 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     "put pants with short tubes between them together: patches of up to 3 "
                     "(default) to 6 boundary loops");
     sub->add_option("--element-size", mesh->element_size,
-                    "length of a spline element (default: a twentieth of the diagonal)");
-    sub->add_option("--degree", mesh->degree, "of the splines (default: 2)");
+                    "length of a spline element (default: a twentieth of the diagonal)")
+        ->check([](const std::string& text) {
+            return std::strtod(text.c_str(), nullptr) > 0.0 ? "" : "must be positive";
+        });
+    sub->add_option("--degree", mesh->degree, "of the splines (default: 2)")
+        ->check(CLI::Range(1, iga::max_degree));
     sub->add_option("--layout", mesh->layout,
                     "a coarse mesh of cuboids (.mesh, .vtk, or .toml: nodes and cuboids by "
                     "hand) that lies about where the solid does: "
@@ -185,6 +267,8 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
         ->required();
     add_surface_options(sub, *from);
 
+    add_rom_commands(app, command);
+
     const auto verify = std::make_shared<VerifyOptions>();
     sub = add_command(app, command, "verify", "solve problems with known answers and compare",
                       [&command, verify] { return run_verify(*verify, command.common); });
@@ -192,7 +276,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     sub->add_flag("--long", verify->with_long, "the long cases too");
 
     const auto bench = std::make_shared<BenchCommandOptions>();
-    sub = add_command(app, command, "bench", "time assembly and solvers on this machine",
+    sub = add_command(app, command, "bench", "time assembly, solvers and meshing on this machine",
                       [&command, bench] { return run_bench(*bench, command.common); });
     sub->add_flag("--quick", bench->quick, "small cases only, a few seconds");
     sub->add_option("--save", bench->save, "also write the numbers to this JSON file");

@@ -170,8 +170,9 @@ std::vector<MemberResult> read_family_progress(const fs::path& path, const std::
             if (member.at("status") == done) results.push_back(read_result(member));
         }
     } catch (const ordered_json::exception& error) {
-        throw FileError("{}: is no list of the members of a family: {}", path.string(),
-                        error.what());
+        throw FileError(
+            "{}: is no list of the members of a family, or was cut ({}); go on without --resume",
+            path.string(), error.what());
     }
     return results;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "drivers/meshed_geometry.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
@@ -96,6 +97,8 @@ io::AnyMultiPatch load_geometry(const io::Deck& deck) {
             log::info(fmt::format("{}: {}", deck.geometry.file.filename().string(), note));
         }
         geometry = std::move(file.multipatch);
+    } else if (!deck.geometry.mesh.empty()) {
+        geometry = std::move(mesh_geometry(deck).solid->volume->volume);
     } else {
         try {
             geometry = meshing::make_part(deck.geometry.part, deck.geometry.parameters);
@@ -103,8 +106,12 @@ io::AnyMultiPatch load_geometry(const io::Deck& deck) {
             throw InputError("{}: {}", deck.geometry.source, error.what());
         }
     }
-    std::visit([&](auto& multipatch) { add_sets(deck.geometry, multipatch); }, geometry);
+    add_deck_sets(deck.geometry, geometry);
     return geometry;
+}
+
+void add_deck_sets(const io::GeometrySource& source, io::AnyMultiPatch& geometry) {
+    std::visit([&](auto& multipatch) { add_sets(source, multipatch); }, geometry);
 }
 
 namespace {

@@ -6,11 +6,16 @@
 
 namespace couture::drivers {
 
-/// The deck's geometry (file or built-in part) with the sets that the deck adds.
+/// The deck's geometry (file, built-in part, or volume that is meshed) with the sets that the deck
+/// adds.
 ///
-/// @throws FileError, InputError, TopologyError  what reading or building it throws, and for a set
-///                                               whose entities can't be read or do not exist
+/// @throws FileError, InputError, TopologyError  what reading, building or meshing it throws, and
+///                                               for a set whose entities can't be read or do not
+///                                               exist
 [[nodiscard]] io::AnyMultiPatch load_geometry(const io::Deck& deck);
+
+/// Adds the sets of [geometry.sets]. @throws InputError  for entities that do not exist
+void add_deck_sets(const io::GeometrySource& source, io::AnyMultiPatch& geometry);
 
 /// "patch 3 side 0:low", "patch 3 edge 0:low 2:high" or "patch 3 corner 0:low 1:low 2:high".
 /// @throws InputError  for anything else, and for a patch that does not exist

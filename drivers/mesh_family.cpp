@@ -13,6 +13,7 @@
 #include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "iga/topology/space.h"
+#include "io/atomic_file.h"
 #include "io/family_members.h"
 #include "io/pants_file.h"
 #include "io/picture.h"
@@ -53,10 +54,11 @@ class Family {
             MemberResult& result = results_.emplace_back();
             result.member = members[m];
             const Timer timer;
-            if (const MemberResult* earlier = find_earlier(members[m])) {
+            const MemberResult* earlier = find_earlier(members[m]);
+            if (auto volume = earlier != nullptr ? read_earlier(members[m]) : std::nullopt) {
                 result = *earlier;
                 result.member = members[m];
-                take_over(result.member);
+                take_over(result.member, std::move(*volume));
                 continue;
             }
             if (m == 0) {
@@ -115,11 +117,21 @@ class Family {
         return is_newer ? &*found : nullptr;
     }
 
+    // Nothing if its file was damaged since.
+    [[nodiscard]] std::optional<iga::MultiPatch<3>> read_earlier(
+        const io::FamilyMember& member) const {
+        try {
+            auto splines = io::read_splines(volume_file(member)).multipatch;
+            if (auto* volume = std::get_if<iga::MultiPatch<3>>(&splines)) return std::move(*volume);
+        } catch (const Error& error) {
+            log::warn(fmt::format("family: {} is meshed again: {}", member.name, error.what()));
+        }
+        return {};
+    }
+
     // Goes on from what an earlier run wrote.
-    void take_over(const io::FamilyMember& member) {
+    void take_over(const io::FamilyMember& member, iga::MultiPatch<3> volume) {
         log::info(fmt::format("family: {} is done already", member.name));
-        auto volume =
-            std::get<iga::MultiPatch<3>>(io::read_splines(volume_file(member)).multipatch);
         if (record_.empty()) {
             const PreparedSurface surface = prepare_surface(deck_of(member), problems_file(member));
             reference_ = volume;
@@ -227,11 +239,12 @@ class Family {
         const bool is_corner = homology.max_corner_distance > meshing::homology_tolerance;
         result.failure = fmt::format(
             "not homologous: {} '{}' is {:.3g} of the diagonal away from the {} that it lies on in "
-            "the reference",
+            "the reference; at most {:.3g} is taken: finer triangles (edge_length) or smaller "
+            "elements (element_size) follow it better",
             is_corner ? "corner" : "feature curve",
             is_corner ? homology.worst_corner : homology.worst_curve,
             is_corner ? homology.max_corner_distance : homology.max_curve_distance,
-            is_corner ? "node" : "arcs");
+            is_corner ? "node" : "arcs", meshing::homology_tolerance);
     }
 
     void write(const MeshedMember& meshed, const MemberResult& result) {
@@ -296,6 +309,7 @@ std::string job_of(const io::MeshDeck& deck, const MeshOptions& options) {
 int mesh_family(const io::MeshDeck& deck, const MeshOptions& options, const CommonOptions& common) {
     const std::string name = deck.path.stem().string();
     const fs::path folder = options.out.empty() ? fs::path("out") / name : options.out;
+    io::require_writable(folder);
     const Timer timer;
     Family family(deck, folder, name, options, job_of(deck, options));
     family.run();

@@ -5,20 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
+#include "drivers/own_layout.h"
 #include "drivers/prepared_surface.h"
 #include "drivers/solid_stages.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "io/did_you_mean.h"
-#include "io/named_layout_file.h"
 #include "io/pants_file.h"
 #include "io/surface_writer.h"
-#include "io/template_file.h"
-#include "io/volumetric_layout_file.h"
 #include "meshing/layout/place_layout.h"
-#include "meshing/layout/snap_nodes.h"
+#include "meshing/pipeline/rounded_edges.h"
 #include "meshing/surface/curvature.h"
 #include "meshing/surface/curvature_clusters.h"
 #include "meshing/surface/cut_surface.h"
@@ -207,42 +206,41 @@ io::Scene make_curvature_scene(SurfaceMesh mesh) {
     return scene;
 }
 
-// A layout that was written by hand.
-CuboidDecomposition place_named(const io::MeshDeck& deck, const MeshStages& stages,
-                                const Landmarks& landmarks) {
-    const io::NamedLayout layout =
-        io::read_named_layout(deck.layout, landmarks.corners, deck.units);
-    constexpr double relative_tolerance = 0.01;
-    const double tolerance =
-        layout.tolerance.value_or(relative_tolerance * bounding_box_diagonal(stages.mesh));
-    SurfaceMesh mesh = stages.mesh;
-    const PlacedLayout placed =
-        snap_nodes(mesh, stages.features, layout.placed, layout.names, tolerance);
-    return place_layout(mesh, stages.features, placed, tolerance);
+// Warns of sharp edges that no arc runs along, the longest first.
+void warn_of_rounded_edges(const CuboidDecomposition& cuboids, const Features& features) {
+    std::vector<RoundedEdge> rounded = find_rounded_edges(cuboids);
+    std::ranges::stable_sort(rounded, std::greater<>(), &RoundedEdge::length);
+    constexpr std::size_t most_named = 5;
+    for (std::size_t k = 0; k < std::min(rounded.size(), most_named); ++k) {
+        const RoundedEdge& edge = rounded[k];
+        const FeatureCurve& curve = features.curves[edge.curve];
+        log::warn(fmt::format(
+            "layout: no arc runs along {:.4g} of the length {:.4g} of the sharp edge {}, near "
+            "({:.6g}, {:.6g}, {:.6g}); it is rounded there",
+            edge.length, curve.length,
+            curve.name.empty() ? std::to_string(edge.curve) : fmt::format("'{}'", curve.name),
+            edge.place.x(), edge.place.y(), edge.place.z()));
+    }
+    if (rounded.size() > most_named) {
+        log::warn(
+            fmt::format("layout: so are {} shorter sharp edges", rounded.size() - most_named));
+    }
 }
 
-// The deck's own layout, placed on the surface. Warns of features that it leaves out.
-CuboidDecomposition placed_cuboids(const io::MeshDeck& deck, const MeshStages& stages,
-                                   const Landmarks& landmarks) {
-    if (stages.invariants.n_boundaries > 0) {
-        throw InputError(
-            "mesh: a layout of one's own ([meshing] layout, --layout) needs a closed surface, this "
-            "one has {} boundary loops; leave out what opens caps, or fill the holes",
-            stages.invariants.n_boundaries);
+// Faces of the surface that no side of a cuboid belongs to.
+void warn_of_lost_faces(const NamedFaces& faces,
+                        const std::map<std::string, std::vector<CuboidSide>>& sets) {
+    std::vector<std::string> lost;
+    for (const std::string& name : faces.names) {
+        const auto set = sets.find(name);
+        if (set == sets.end() || set->second.empty()) lost.push_back(name);
     }
-    CuboidDecomposition cuboids =
-        deck.layout.extension() == ".toml"
-            ? place_named(deck, stages, landmarks)
-            : place_layout(stages.mesh, stages.features, io::read_volumetric_layout(deck.layout));
-    double length = 0.0;
-    for (const FeatureCurve& curve : stages.features.curves) length += curve.length;
-    const double untied = untied_length(cuboids);
-    if (untied > 0.0) {
-        log::warn(fmt::format(
-            "{}: no arc runs along {:.3g} of {:.3g} of the surface's sharp edges; they are rounded",
-            deck.layout.string(), untied, length));
-    }
-    return cuboids;
+    if (lost.empty()) return;
+    log::warn(
+        fmt::format("mesh: no side of a cuboid lies on the faces {}: there are no sets of these "
+                    "names; a layout "
+                    "with cuboids at them would have them",
+                    io::quoted_list(lost)));
 }
 
 io::Scene make_scene(const MeshStages& stages, MeshStage stage,
@@ -332,16 +330,31 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
     solid.faces = std::move(surface.faces);
     if (last > MeshStage::pants) solid.last = solid_stage(last);
     const auto run_solid = [&](CuboidDecomposition cuboids) {
+        warn_of_rounded_edges(cuboids, stages.features);
         // What is left if mesh_solid throws.
         stages.solid.emplace().cuboids = cuboids;
         stages.solid = mesh_solid(std::move(cuboids), solid);
+        if (stages.solid->distance && stages.solid->distance->rounded > 0.0) {
+            log::warn(fmt::format(
+                "volume: sharp edges that no arc runs along are rounded by {:.2e} of the diagonal",
+                stages.solid->distance->rounded));
+        }
+        if (solid.faces) warn_of_lost_faces(*solid.faces, stages.solid->cuboids.volume.sets);
     };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
-        run_solid(placed_cuboids(deck, stages, surface.landmarks));
+        SurfaceMesh mesh = stages.mesh;
+        const OwnLayout own = read_own_layout(deck, mesh, stages.features, surface.landmarks);
+        run_solid(place_layout(mesh, stages.features, own.placed, own.most_reach));
         return;
     }
     std::optional<ClosingCaps> caps = surface.caps;
+    if (last > MeshStage::pants && stages.invariants.n_components > 1) {
+        throw InputError(
+            "mesh: the surface has {} shells: cuboids are made of one, without cavities; take one "
+            "(shell), or stop at stage pants",
+            stages.invariants.n_components);
+    }
     if (last > MeshStage::pants) {
         if (!caps) caps = fill_boundaries(stages.mesh);
         if (options.cycle == CriterionWeights{}) options.cycle.sharp = clear_of_sharp_edges;
@@ -357,8 +370,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
     if (last >= MeshStage::pants)
         stages.record = record_pants(stages.mesh, *stages.pants, surface.landmarks);
     if (last <= MeshStage::pants) return;
-    TemplateLibrary library = io::built_in_templates();
-    if (!deck.templates.empty()) io::add_templates(deck.templates, library);
+    const TemplateLibrary library = template_library(deck);
     solid.progress("choosing and drawing cuboids");
     const auto cuboids = [&] {
         if (!surface.record || !surface.record->layout) {

@@ -13,6 +13,7 @@
 #include "meshing/field/face_frames.h"
 #include "meshing/field/streamline.h"
 #include "meshing/parameterization/sample_grid.h"
+#include "meshing/surface/point_grid.h"
 #include "meshing/surface/predicates.h"
 
 namespace couture::drivers {
@@ -217,14 +218,11 @@ io::Scene field_scene(const SolidMesh& solid) {
     scene.surfaces.push_back(piece_of(soup, soup.triangles));
     const double spacing = bounding_box_diagonal(mesh) / 50.0;
     const FaceFrames frames(mesh);
-    std::vector<Vector3> centers;
+    PointGrid centers(spacing);
     for (const FaceHandle face : mesh.faces()) {
         const Vector3 center = mesh.calc_face_centroid(face);
-        if (std::ranges::any_of(
-                centers, [&](const Vector3& other) { return (other - center).norm() < spacing; })) {
-            continue;
-        }
-        centers.push_back(center);
+        if (centers.distance(center) < spacing) continue;
+        centers.add(center);
         for (int k = 0; k < 2; ++k) {
             const auto half = [&](int direction) {
                 return trace_streamline(mesh, frames, solid.field->field, face, direction,

@@ -119,21 +119,30 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
                         "or 'part'");
         return;
     }
-    if (section.has("file") == section.has("part")) {
-        section.mistake(section.has("file") ? "part" : "",
-                        "[geometry] needs either 'file' (a spline file) or 'part' (a built-in "
-                        "part)");
+    const auto mesh = section.text("mesh");
+    const int n_given = static_cast<int>(section.has("file")) +
+                        static_cast<int>(section.has("part")) +
+                        static_cast<int>(section.has("mesh"));
+    if (n_given != 1) {
+        section.mistake(n_given > 1 && section.has("part") ? "part" : "",
+                        "[geometry] needs one of 'file' (a spline file), 'part' (a built-in part) "
+                        "and 'mesh' (a deck for `couture mesh`)");
     }
+    const auto require_file = [&](const std::string& key, const fs::path& path) {
+        if (!fs::exists(path)) {
+            section.mistake(key, fmt::format("there is no file {} (paths are relative to the deck)",
+                                             path.string()));
+        } else if (fs::is_directory(path)) {
+            section.mistake(key, fmt::format("{} is a folder, not a file", path.string()));
+        }
+    };
     if (file) {
         geometry.file = folder / *file;
-        if (!fs::exists(geometry.file)) {
-            section.mistake("file", fmt::format("there is no file {} (paths are relative to the "
-                                                "deck)",
-                                                geometry.file.string()));
-        } else if (fs::is_directory(geometry.file)) {
-            section.mistake("file",
-                            fmt::format("{} is a folder, not a file", geometry.file.string()));
-        }
+        require_file("file", geometry.file);
+    }
+    if (mesh) {
+        geometry.mesh = folder / *mesh;
+        require_file("mesh", geometry.mesh);
     }
     geometry.part = part.value_or("");
     const auto read_table = [&](const std::string& key,
@@ -159,8 +168,9 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
     read_table("sets", [&](Section& inner, const std::string& name) {
         geometry.sets[name] = inner.texts(name);
     });
-    if (!geometry.parameters.empty() && geometry.part.empty()) {
-        section.mistake("parameters", "[geometry.parameters] belongs to 'part'; a file has none");
+    if (!geometry.parameters.empty() && !geometry.file.empty()) {
+        section.mistake("parameters",
+                        "[geometry.parameters] belongs to 'part' or 'mesh'; a file has none");
     }
 }
 
@@ -252,7 +262,8 @@ Deck parse_deck(const std::string& text, const fs::path& path,
     deck.title = top.text("title").value_or(path.stem().string());
     for_section(top, "units", [&](Section& section) { read_units(section, context.units); });
     deck.units = context.units;
-    if (top.require("geometry", "the section [geometry] with 'file' or 'part'") != nullptr) {
+    if (top.require("geometry", "the section [geometry] with 'file', 'part' or 'mesh'") !=
+        nullptr) {
         for_section(top, "geometry", [&](Section& section) {
             read_geometry(section, path.parent_path(), deck.geometry);
         });
@@ -268,6 +279,7 @@ Deck parse_deck(const std::string& text, const fs::path& path,
     for_section(top, "solver", [&](Section& section) { read_solver(section, deck.solver); });
     read_stepping(top, deck);
     for_section(top, "output", [&](Section& section) { read_output(section, deck); });
+    deck.rom = read_rom_section(top);
     top.finish();
     context.mistakes.throw_if_any();
     if (deck.is_hyperelastic() && !deck.output.png_scale) {

@@ -9,15 +9,19 @@
 #include "iga/linalg/sparse_solver.h"
 #include "iga/mechanics/problem.h"
 #include "iga/solve/load_stepping.h"
+#include "io/rom_section.h"
 #include "io/units.h"
 
 namespace couture::io {
 
-/// Exactly one of `file` and `part` is set.
+/// Exactly one of `file`, `mesh` and `part` is set.
 struct GeometrySource {
     /// Absolute, or relative to the working folder.
     std::filesystem::path file;
+    /// A deck for meshing: the volume that it makes.
+    std::filesystem::path mesh;
     std::string part;
+    /// Of the part, or of the part that `mesh` names.
     std::map<std::string, double> parameters;
     /// Sets of the deck: name -> entities as in PatchEntity::name ("patch 3 side 0:low").
     std::map<std::string, std::vector<std::string>> sets;
@@ -113,8 +117,11 @@ struct Deck {
     std::optional<RemeshingOptions> remeshing;
     OutputOptions output;
     std::vector<Probe> probes;
+    /// Nothing: no reduced model is made of it.
+    std::optional<RomSection> rom;
     /// What the states of a run depend on: all of the deck but its title and [stepping], [solver],
-    /// [remeshing], [output], with the overrides; and the end of the run if loads grow until then.
+    /// [remeshing], [rom], [output], with the overrides; and the end of the run if loads grow until
+    /// then.
     std::string model_text;
 
     /// The materials are hyperelastic: all are, or none.

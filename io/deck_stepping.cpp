@@ -269,7 +269,7 @@ void append(std::string& text, const TomlNode& node) {
 
 std::string model_text_of(const TomlNode& document, const Deck& deck, const DeckContext& context) {
     static const std::vector<std::string> others = {"title", "stepping", "solver", "remeshing",
-                                                    "output"};
+                                                    "output", "rom"};
     std::string text;
     for (const auto& [key, value] : document.entries) {
         if (std::find(others.begin(), others.end(), key) == others.end()) {

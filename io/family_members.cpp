@@ -48,8 +48,10 @@ class Table {
   public:
     explicit Table(const std::filesystem::path& path) : path_(path) {
         const std::string text = read_text(path);
+        constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
         int number = 0;
-        for (std::size_t begin = 0; begin < text.size();) {
+        for (std::size_t begin = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+             begin < text.size();) {
             const std::size_t end = std::min(text.find('\n', begin), text.size());
             const std::vector<std::string> cells = cells_of(text.substr(begin, end - begin));
             begin = end + 1;
@@ -76,6 +78,9 @@ class Table {
 
     void read_head(const std::vector<std::string>& cells, int line) {
         std::set<std::string> known;
+        if (cells.size() == 1 && cells[0].find(';') != std::string::npos) {
+            throw InputError("{}: cells are parted by ';'; part them by commas", where(line));
+        }
         for (const std::string& cell : cells) {
             if (cell.empty() || !known.insert(cell).second) {
                 throw InputError("{}: column '{}' {}", where(line), cell,
@@ -105,7 +110,8 @@ class Table {
             }
         }
         if (std::find(head_.begin(), head_.end(), "name") == head_.end()) {
-            member.name = fmt::format("member_{}", members_.size() + 1);
+            member.name = member.surface.empty() ? fmt::format("member_{}", members_.size() + 1)
+                                                 : member.surface.stem().string();
         }
         check_name(member.name, where(line));
         if (!names_.insert(member.name).second) {

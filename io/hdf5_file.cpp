@@ -11,6 +11,8 @@ namespace couture::io {
 
 namespace {
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 constexpr std::size_t block_size = 512;
 /// Memory of an HDF5 file in the making grows by this.
 constexpr std::size_t increment = 1 << 16;
@@ -122,6 +124,13 @@ void write_doubles(hid_t group, const std::string& name, const std::vector<hsize
     H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
 }
 
+void write_matrix(hid_t group, const std::string& name, const MatrixX& matrix) {
+    const RowMajor rows = matrix;
+    write_doubles(group, name,
+                  {static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())},
+                  rows.data());
+}
+
 void write_attribute(hid_t object, const std::string& name, const std::vector<int>& values) {
     const hsize_t size = values.size();
     const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, name);
@@ -198,6 +207,13 @@ std::vector<double> Source::doubles(hid_t parent, const std::string& name, int r
     expect(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, file,
            fmt::format("'{}' can't be read as numbers", name));
     return values;
+}
+
+MatrixX Source::matrix(hid_t parent, const std::string& name) const {
+    std::vector<hsize_t> found;
+    const std::vector<double> values = doubles(parent, name, 2, found);
+    return Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(found[0]),
+                                      static_cast<Eigen::Index>(found[1]));
 }
 
 std::vector<int> Source::rows(hid_t set, const std::string& name, std::size_t width) const {

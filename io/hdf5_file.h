@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "iga/core/error.h"
+#include "iga/core/types.h"
 
 namespace couture::io {
 
@@ -58,6 +59,8 @@ void write_ints(hid_t group, const std::string& name, const std::vector<hsize_t>
 /// @param values  last dimension fastest
 void write_doubles(hid_t group, const std::string& name, const std::vector<hsize_t>& shape,
                    const double* values);
+/// rows x columns.
+void write_matrix(hid_t group, const std::string& name, const MatrixX& matrix);
 /// A data set of bytes, of any length.
 void write_bytes(hid_t group, const std::string& name, std::string_view bytes);
 void write_attribute(hid_t object, const std::string& name, const std::vector<int>& values);
@@ -76,6 +79,8 @@ struct Source {
     [[nodiscard]] std::vector<hsize_t> shape(hid_t data, int rank, const std::string& name) const;
     [[nodiscard]] std::vector<double> doubles(hid_t parent, const std::string& name, int rank,
                                               std::vector<hsize_t>& found_shape) const;
+    /// What `write_matrix` wrote.
+    [[nodiscard]] MatrixX matrix(hid_t parent, const std::string& name) const;
     /// What `write_bytes` wrote.
     [[nodiscard]] std::string bytes(hid_t parent, const std::string& name) const;
     /// Whole numbers of a data set with `width` columns.

@@ -231,6 +231,11 @@ void read_family(Section& section, const fs::path& folder, MeshDeck& deck) {
     }
     family.reference = section.text("reference").value_or("");
     family.members = section.texts("members");
+    if (!deck.layout.empty()) {
+        section.mistake("",
+                        "[family] repeats the cuts and templates of its reference; a 'layout' of "
+                        "one's own in [meshing] has neither: mesh each member by itself with it");
+    }
     if (!deck.like.empty()) {
         section.mistake("",
                         "[family] repeats its reference; 'like' of [meshing] has no place "

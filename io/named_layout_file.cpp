@@ -19,12 +19,13 @@ namespace {
 using Hexahedron = std::array<int, 8>;
 
 void read_nodes(Section& nodes, const TomlNode& table,
-                const std::map<std::string, Vector3>& corners, NamedLayout& layout) {
+                const std::map<std::string, Vector3>& corners, std::vector<std::string>& names,
+                std::vector<Vector3>& positions) {
     std::vector<std::string> corner_names;
     for (const auto& [name, x] : corners) corner_names.push_back(name);
     for (const auto& [name, node] : table.entries) {
-        layout.names.push_back(name);
-        Vector3& x = layout.placed.positions.emplace_back(Vector3::Zero());
+        names.push_back(name);
+        Vector3& x = positions.emplace_back(Vector3::Zero());
         if (node.kind != TomlNode::Kind::text) {
             const auto values = nodes.numbers(name, dimensions::length, {3});
             if (values.size() == 3) x = Vector3(values[0], values[1], values[2]);
@@ -66,7 +67,9 @@ std::optional<Hexahedron> read_cuboid(Section& cuboid, const std::vector<std::st
         if (std::find(given.begin(), given.begin() + static_cast<long>(k), given[k]) !=
             given.begin() + static_cast<long>(k)) {
             cuboid.mistake("nodes", fmt::format("node '{}' stands twice in the cuboid; its 8 nodes "
-                                                "must be different",
+                                                "must be different. A prism of triangles is no "
+                                                "cuboid: halve the sides of its ends, which makes "
+                                                "three",
                                                 given[k]));
             return {};
         }
@@ -100,25 +103,27 @@ NamedLayout parse_named_layout(const std::string& name, std::string_view text,
     Section top(document, "", context);
     NamedLayout layout;
     layout.tolerance = top.number("tolerance", dimensions::length, positive);
+    std::vector<std::string> names;
+    std::vector<Vector3> positions;
     std::vector<Hexahedron> cuboids;
     const TomlNode* table = top.require("nodes", "the section [nodes] with a place for each node");
     if (table != nullptr && table->kind == TomlNode::Kind::table) {
         Section nodes(*table, "[nodes]", context);
-        read_nodes(nodes, *table, corners, layout);
+        read_nodes(nodes, *table, corners, names, positions);
         bool is_whole = top.require("cuboid", "[[cuboid]] with 'nodes'") != nullptr;
         for_each_entry(top, "cuboid", [&](Section& cuboid) {
-            const auto corners_of = read_cuboid(cuboid, layout.names);
+            const auto corners_of = read_cuboid(cuboid, names);
             is_whole = is_whole && corners_of.has_value();
             if (corners_of) cuboids.push_back(*corners_of);
         });
-        if (is_whole) check_all_used(nodes, layout.names, cuboids);
+        if (is_whole) check_all_used(nodes, names, cuboids);
     } else if (table != nullptr) {
         top.mistake("nodes",
                     fmt::format("'nodes' is {}, expected the section [nodes]", table->kind_name()));
     }
     top.finish();
     context.mistakes.throw_if_any();
-    layout.placed = make_placed_layout(name, layout.placed.positions, std::move(cuboids));
+    layout.placed = make_placed_layout(name, positions, std::move(cuboids), names);
     return layout;
 }
 

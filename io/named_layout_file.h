@@ -14,9 +14,8 @@ namespace couture::io {
 
 /// A layout of cuboids that was written by hand.
 struct NamedLayout {
+    /// With the names of its nodes.
     meshing::PlacedLayout placed;
-    /// Of the nodes.
-    std::vector<std::string> names;
     /// How far nodes may lie from where they belong on the surface; nothing: not said.
     std::optional<double> tolerance;
 };
@@ -36,9 +35,9 @@ struct NamedLayout {
 /// @param corners  of the part, by their names; none of files
 /// @param units    of plain numbers
 /// @throws InputError  with all that is wrong: file, line, what was found and what was expected
-/// @throws FileError   if it can't be read, or as read_volumetric_layout, for the cuboids; nodes
+/// @throws FileError   if it can't be read, or as read_volumetric_layout, for the cuboids, which
 /// are
-///                     counted in the order of the file
+///                     counted from 0
 [[nodiscard]] NamedLayout read_named_layout(const std::filesystem::path& path,
                                             const std::map<std::string, Vector3>& corners = {},
                                             const UnitSystem& units = UnitSystem());

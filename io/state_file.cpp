@@ -13,7 +13,6 @@ namespace couture::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int state_version = 1;
 constexpr const char* kind = "state";
@@ -181,20 +180,6 @@ void check_origin(const std::string& file, const Json& record, int d, const Stat
 
 // ---- matrices
 
-void write_matrix(hid_t group, const std::string& name, const MatrixX& matrix) {
-    const RowMajor rows = matrix;
-    write_doubles(group, name,
-                  {static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())},
-                  rows.data());
-}
-
-MatrixX read_matrix(const Source& source, hid_t group, const std::string& name) {
-    std::vector<hsize_t> shape;
-    const std::vector<double> values = source.doubles(group, name, 2, shape);
-    return Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(shape[0]),
-                                      static_cast<Eigen::Index>(shape[1]));
-}
-
 void expect_shape(const std::string& file, const std::string& name, const MatrixX& matrix,
                   Eigen::Index n_rows, Eigen::Index n_columns) {
     expect(matrix.rows() == n_rows && matrix.cols() == n_columns, file,
@@ -210,8 +195,8 @@ iga::ReferencePtr<d> read_reference(const Source& source, hid_t root) {
     expect(geometry != nullptr, source.file, "the reference's geometry has another dimension");
     iga::ReferenceConfiguration<d> reference;
     reference.space = std::make_shared<const iga::Space<d>>(std::move(*geometry));
-    reference.displacement = read_matrix(source, group, "displacement");
-    reference.gradient = read_matrix(source, group, "gradient");
+    reference.displacement = source.matrix(group, "displacement");
+    reference.gradient = source.matrix(group, "gradient");
     const Eigen::Index n = reference.space->n_dofs();
     if (!reference.is_undeformed()) {
         expect_shape(source.file, "reference/displacement", reference.displacement, n, d);
@@ -261,8 +246,8 @@ iga::AcceptedStep<d> read_state(const std::filesystem::path& path,
     }
     const bool is_remeshed = H5Lexists(store, "reference", H5P_DEFAULT) > 0;
     step.state.reference = is_remeshed ? read_reference<d>(source, store) : undeformed;
-    step.state.displacement = read_matrix(source, store, "displacement");
-    step.state.direction = read_matrix(source, store, "direction");
+    step.state.displacement = source.matrix(store, "displacement");
+    step.state.direction = source.matrix(store, "direction");
     const Eigen::Index n = step.state.reference->space->n_dofs();
     expect_shape(file, "displacement", step.state.displacement, n, d);
     return step;

@@ -8,6 +8,7 @@
 #include "iga/core/error.h"
 #include "io/atomic_file.h"
 #include "io/raw_surface.h"
+#include "meshing/layout/layout_validity.h"
 
 namespace couture::io {
 
@@ -77,7 +78,8 @@ constexpr int any = std::numeric_limits<int>::max();
 }  // namespace
 
 PlacedLayout make_placed_layout(const std::string& name, const std::vector<Vector3>& points,
-                                std::vector<Hexahedron> hexahedra) {
+                                std::vector<Hexahedron> hexahedra,
+                                const std::vector<std::string>& names) {
     if (hexahedra.empty()) throw FileError("{}: has no hexahedra", name);
     std::vector<int> number(points.size(), -1);
     for (const auto& corners : hexahedra) {
@@ -88,6 +90,7 @@ PlacedLayout make_placed_layout(const std::string& name, const std::vector<Vecto
         if (number[i] < 0) continue;
         number[i] = placed.layout.n_nodes++;
         placed.positions.push_back(points[i]);
+        if (!names.empty()) placed.layout.node_names.push_back(names[i]);
     }
     for (auto& corners : hexahedra) {
         for (int& point : corners) point = number[point];
@@ -95,7 +98,10 @@ PlacedLayout make_placed_layout(const std::string& name, const std::vector<Vecto
     placed.layout.cuboids = std::move(hexahedra);
     turn_mirrored(name, placed);
     try {
-        static_cast<void>(meshing::layout_boundary(placed.layout));
+        const meshing::QuadLayout boundary = meshing::layout_boundary(placed.layout).layout;
+        const meshing::LayoutVerdict verdict =
+            meshing::judge_layout(boundary, boundary.euler_characteristic());
+        if (!verdict.is_cuboid_configuration) throw FileError("{}", verdict.reason);
     } catch (const Error& error) {
         throw FileError("{}: {}", name, error.what());
     }

@@ -16,15 +16,19 @@ namespace couture::io {
 /// are passed over.
 ///
 /// @throws FileError  if it is missing, malformed, has no hexahedra or (VTK) other cells; a
-///                    hexahedron has no volume or a point twice; or the boundary is no manifold:
-///                    names the file and the line or the hexahedron, counted from 0
+///                    hexahedron has no volume or a point twice; or the boundary is no manifold, or
+///                    not one that cuboids bound (judge_layout): names the file and the line or the
+///                    hexahedron, counted from 0
 [[nodiscard]] meshing::PlacedLayout read_volumetric_layout(const std::filesystem::path& path);
 
 /// A layout of hexahedra between points; checked and turned as read_volumetric_layout says, whose
 /// errors it throws in the name of a file.
+///
+/// @param names  of the points, for messages; empty: they have none
 [[nodiscard]] meshing::PlacedLayout make_placed_layout(const std::string& name,
                                                        const std::vector<Vector3>& points,
-                                                       std::vector<std::array<int, 8>> hexahedra);
+                                                       std::vector<std::array<int, 8>> hexahedra,
+                                                       const std::vector<std::string>& names = {});
 
 /// The same for texts at hand; `name` is what messages call them.
 [[nodiscard]] meshing::PlacedLayout parse_medit_layout(const std::string& name,

@@ -77,19 +77,19 @@ MatrixX apply_kronecker(const std::vector<MatrixX>& A, const MatrixX& B) {
 }
 
 std::optional<CorrelationMatrix> CorrelationMatrix::factored(std::vector<MatrixX> factors,
-                                                             double nugget) {
+                                                             double nugget, bool has_traces) {
     assert(!factors.empty() && nugget >= 0.0);
     CorrelationMatrix matrix;
     matrix.sizes_ = sizes_of(factors);
     matrix.factors_ = std::move(factors);
     matrix.nugget_ = nugget;
-    if (!matrix.factor()) {
+    if (!matrix.factor(has_traces)) {
         return std::nullopt;
     }
     return matrix;
 }
 
-bool CorrelationMatrix::factor() {
+bool CorrelationMatrix::factor(bool has_traces) {
     if (factors_.size() == 1) {
         MatrixX K = factors_.front();
         const Eigen::Index n = K.rows();
@@ -99,7 +99,9 @@ bool CorrelationMatrix::factor() {
             return false;
         }
         L_ = cholesky.matrixL();
-        inverse_ = cholesky.solve(MatrixX::Identity(n, n));
+        if (has_traces) {
+            inverse_ = cholesky.solve(MatrixX::Identity(n, n));
+        }
         return true;
     }
     std::vector<VectorX> eigenvalues;
@@ -130,7 +132,12 @@ double CorrelationMatrix::log_determinant() const {
 
 VectorX CorrelationMatrix::inverse_diagonal() const {
     if (factors_.size() == 1) {
-        return inverse_.diagonal();
+        if (inverse_.size() > 0) {
+            return inverse_.diagonal();
+        }
+        const Eigen::Index n = L_.rows();
+        const MatrixX L_inverse = L_.triangularView<Eigen::Lower>().solve(MatrixX::Identity(n, n));
+        return L_inverse.colwise().squaredNorm();
     }
     std::vector<MatrixX> squares;
     for (const MatrixX& Q : eigenvectors_) {
@@ -141,6 +148,7 @@ VectorX CorrelationMatrix::inverse_diagonal() const {
 
 double CorrelationMatrix::trace_of_inverse_times(int i_factor, const MatrixX& dK) const {
     if (factors_.size() == 1) {
+        assert(inverse_.size() > 0);
         return inverse_.cwiseProduct(dK).sum();
     }
     std::vector<VectorX> diagonals;

@@ -15,28 +15,31 @@ namespace couture::rom {
 /// Source: [Saatci11] Ch. 5 (products with a nugget through eigenvectors).
 class CorrelationMatrix {
   public:
+    /// @param has_traces  keeps what `trace_of_inverse_times` takes: most of the time of one factor
     /// @return nothing if K is not positive definite to rounding
     [[nodiscard]] static std::optional<CorrelationMatrix> factored(std::vector<MatrixX> factors,
-                                                                   double nugget);
+                                                                   double nugget,
+                                                                   bool has_traces = false);
 
     /// K^-1 B. @param B  n x m, rows with the last factor fastest
     [[nodiscard]] MatrixX solve(const MatrixX& B) const;
     [[nodiscard]] double log_determinant() const;
     /// Diagonal of K^-1.
     [[nodiscard]] VectorX inverse_diagonal() const;
-    /// Trace of K^-1 (K_1 x ... dK_g ... ): for the derivative by a parameter of factor g.
+    /// Trace of K^-1 (K_1 x ... dK_g ... ): for the derivative by a parameter of factor g. Only
+    /// if it was factored for traces.
     [[nodiscard]] double trace_of_inverse_times(int i_factor, const MatrixX& dK) const;
     /// (K_1 x ... dK_g ...) v.
     [[nodiscard]] VectorX apply_derivative(int i_factor, const MatrixX& dK, const VectorX& v) const;
 
   private:
     CorrelationMatrix() = default;
-    [[nodiscard]] bool factor();
+    [[nodiscard]] bool factor(bool has_traces);
 
     std::vector<MatrixX> factors_;
     double nugget_ = 0.0;
     std::vector<int> sizes_;
-    /// Of one factor: lower Cholesky factor of K and K^-1.
+    /// Of one factor: lower Cholesky factor of K, and for traces K^-1.
     MatrixX L_;
     MatrixX inverse_;
     /// Of several: eigenvectors of each, and the eigenvalues of K, the last factor fastest.

@@ -177,7 +177,7 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
     const KrigingParameters parameters = to_parameters(log_parameters, n_inputs, options);
     const std::vector<MatrixX> factors =
         correlation_factors(design, options.correlation, parameters.lengths);
-    const auto K = CorrelationMatrix::factored(factors, parameters.nugget);
+    const auto K = CorrelationMatrix::factored(factors, parameters.nugget, true);
     gradient = VectorX::Zero(log_parameters.size());
     if (!K) {
         return std::numeric_limits<double>::infinity();
@@ -278,17 +278,24 @@ double Kriging::value(const VectorX& point) const {
     return trend + contract(correlations_with(point), design_.sizes(), weights_);
 }
 
+double Kriging::variance(const VectorX& k, const VectorX& point) const {
+    const VectorX f = trend_functions(point.transpose(), options_.trend).row(0);
+    const VectorX u =
+        trend_factor_.triangularView<Eigen::Lower>().solve(K_inverse_F_.transpose() * k - f);
+    return variance_ * std::max(0.0, 1.0 - k.dot(K_->solve(k).col(0)) + u.squaredNorm());
+}
+
+double Kriging::variance(const VectorX& point) const {
+    return variance(product_row(correlations_with(point)), point);
+}
+
 Prediction Kriging::predict(const VectorX& point) const {
     Prediction prediction;
     const std::vector<MatrixX> rows = correlations_with(point);
     const VectorX k = product_row(rows);
     const MatrixX f = trend_functions(point.transpose(), options_.trend);
     prediction.value = f.row(0).dot(beta_.transpose()) + k.dot(weights_);
-
-    const VectorX u = trend_factor_.triangularView<Eigen::Lower>().solve(
-        K_inverse_F_.transpose() * k - f.row(0).transpose());
-    prediction.variance =
-        variance_ * std::max(0.0, 1.0 - k.dot(K_->solve(k).col(0)) + u.squaredNorm());
+    prediction.variance = variance(k, point);
 
     prediction.gradient = options_.trend == Trend::linear ? VectorX(beta_.tail(point.size()))
                                                           : VectorX(VectorX::Zero(point.size()));
@@ -308,11 +315,18 @@ Prediction Kriging::predict(const VectorX& point) const {
     return prediction;
 }
 
-VectorX Kriging::leave_one_out() const {
-    // Diagonal of B = K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1; B y are the weights.
+VectorX Kriging::residual_diagonal() const {
     const MatrixX G = trend_factor_.triangularView<Eigen::Lower>().solve(K_inverse_F_.transpose());
-    const VectorX diagonal = K_->inverse_diagonal() - G.colwise().squaredNorm().transpose();
-    return weights_.cwiseQuotient(diagonal);
+    return K_->inverse_diagonal() - G.colwise().squaredNorm().transpose();
+}
+
+VectorX Kriging::leave_one_out() const {
+    // With B = K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1, B y are the weights.
+    return weights_.cwiseQuotient(residual_diagonal());
+}
+
+VectorX Kriging::leave_one_out_variances() const {
+    return variance_ * residual_diagonal().cwiseInverse();
 }
 
 }  // namespace couture::rom

@@ -66,17 +66,29 @@ class Kriging {
             KrigingParameters parameters);
 
     [[nodiscard]] const KrigingParameters& parameters() const { return parameters_; }
+    /// K^-1 (y - trend), one for each point of the design.
+    [[nodiscard]] const VectorX& weights() const { return weights_; }
+    /// Of the functions 1, then of the inputs if the trend is linear.
+    [[nodiscard]] const VectorX& trend_coefficients() const { return beta_; }
     /// @param point  n_parameters values; outside the unit cube it extrapolates
     [[nodiscard]] Prediction predict(const VectorX& point) const;
     /// predict(point).value at little cost.
     [[nodiscard]] double value(const VectorX& point) const;
+    /// predict(point).variance without its gradient.
+    [[nodiscard]] double variance(const VectorX& point) const;
     /// Value at each point minus its prediction from all others with the same parameters.
     ///
     /// Source: [Dubrule83] Eq. (8).
     [[nodiscard]] VectorX leave_one_out() const;
+    /// Variances that these residuals should have.
+    [[nodiscard]] VectorX leave_one_out_variances() const;
 
   private:
     void fit(const VectorX& values);
+    /// Diagonal of K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1.
+    [[nodiscard]] VectorX residual_diagonal() const;
+    /// @param k  correlations of all points with the point
+    [[nodiscard]] double variance(const VectorX& k, const VectorX& point) const;
     /// For each factor its points' correlations with a point.
     [[nodiscard]] std::vector<MatrixX> correlations_with(const VectorX& point) const;
 

@@ -69,9 +69,10 @@ int numerical_rank(const VectorX& singular_values, Eigen::Index n_rows, Eigen::I
     return static_cast<int>((singular_values.array() > least).count());
 }
 
-int wanted_modes(const PodBasis& basis, int rank, const PodOptions& options) {
+int wanted_modes(const PodBasis& basis, const PodOptions& options) {
     int n = 1;
-    while (n < rank && (options.tolerance == 0.0 || basis.relative_error(n) > options.tolerance)) {
+    while (n < basis.rank &&
+           (options.tolerance == 0.0 || basis.relative_error(n) > options.tolerance)) {
         ++n;
     }
     return std::min(n, options.n_modes.value_or(n));
@@ -127,8 +128,8 @@ PodBasis make_pod_basis(const MatrixX& snapshots, const InnerProduct& product,
         basis.remaining_energy =
             std::max(0.0, columns.squaredNorm() - basis.singular_values.squaredNorm());
     }
-    const int rank = numerical_rank(basis.singular_values, columns.rows(), columns.cols());
-    basis.modes = product.from_euclidean(svd.U.leftCols(wanted_modes(basis, rank, options)));
+    basis.rank = numerical_rank(basis.singular_values, columns.rows(), columns.cols());
+    basis.modes = product.from_euclidean(svd.U.leftCols(wanted_modes(basis, options)));
     fix_signs(basis.modes);
     return basis;
 }

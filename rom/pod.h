@@ -27,6 +27,8 @@ struct PodBasis {
     VectorX singular_values;
     /// Sum of the squares of those that were not computed; 0 unless randomised.
     double remaining_energy = 0.0;
+    /// Number of singular values above rounding: no more modes have a meaning.
+    int rank = 0;
 
     /// Error of the best approximation of the snapshots by that many modes, over their norm.
     ///

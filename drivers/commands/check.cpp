@@ -5,6 +5,7 @@
 #include "drivers/commands/commands.h"
 #include "drivers/deck_check.h"
 #include "drivers/job_geometry.h"
+#include "drivers/own_layout.h"
 #include "drivers/prepared_surface.h"
 #include "drivers/probes.h"
 #include "drivers/remesher.h"
@@ -66,11 +67,16 @@ int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     return ExitCode::done;
 }
 
-// The surface is read and opened; its corners, the record, given loops and points are found; no
-// handles and cycles are looked for.
+// The surface is read and opened; its corners, the record, templates, given loops and points, and
+// the nodes of a layout are found; no handles and cycles are looked for.
 int check_mesh_deck(const io::MeshDeck& deck, const CommonOptions& common) {
     PreparedSurface surface = prepare_surface(deck, {});
     const std::size_t n_triangles = surface.mesh.n_faces();
+    static_cast<void>(template_library(deck));
+    if (!deck.layout.empty()) {
+        const meshing::Features features = find_features(deck, surface);
+        static_cast<void>(read_own_layout(deck, surface.mesh, features, surface.landmarks));
+    }
     meshing::check_given_curves(surface.mesh, pants_options(deck, surface));
     const std::string name = meshing::surface_name(surface.mesh);
     if (common.json) {

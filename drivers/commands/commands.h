@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -73,6 +74,59 @@ struct MeshOptions {
     bool resume = false;
 };
 
+/// What the commands that make snapshots take.
+struct RomTrainOptions {
+    std::filesystem::path deck;
+    std::vector<std::string> overrides;
+    /// Empty: out/<deck name> below the working folder.
+    std::filesystem::path out;
+    /// Processes; 0: as many as cores, each with one thread.
+    int n_jobs = 0;
+    /// "2/4": of four equal parts of the work the second, and no model; empty: all.
+    std::string shard;
+    /// Samples that were refused are tried again.
+    bool retry = false;
+};
+
+struct RomEvalOptions {
+    std::filesystem::path model;
+    /// NAME=VALUE; parameters that are not named are in the middle of their ranges.
+    std::vector<std::string> settings;
+    /// Answers also far outside of the training box.
+    bool is_forced = false;
+    /// Projects the full equations onto the modes, too.
+    bool galerkin = false;
+    /// Solves in full, too, and compares.
+    bool solve = false;
+    /// Where fields are written; empty: nowhere, with `png` out/<model name>.
+    std::filesystem::path out;
+    bool png = false;
+};
+
+struct RomEnrichOptions {
+    RomTrainOptions campaign;
+    /// Wanted relative error of the displacement, as the model expects it.
+    double tolerance = 0.01;
+    /// Geometries that are added at most.
+    int max_points = 20;
+};
+
+struct RomMergeOptions {
+    /// Deck, settings and folder of the store that takes the others' snapshots.
+    RomTrainOptions campaign;
+    /// Of shards that were made apart.
+    std::vector<std::filesystem::path> folders;
+};
+
+struct RomValidateOptions {
+    /// Its deck, folder and processes are those of the model's training.
+    RomTrainOptions campaign;
+    int n_points = 20;
+    std::uint64_t seed = 1;
+    bool galerkin = false;
+    bool png = false;
+};
+
 struct CompareOptions {
     std::filesystem::path first;
     std::filesystem::path second;
@@ -100,6 +154,11 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common);
 int run_info(const SurfaceInputOptions& options, const CommonOptions& common);
 int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
                 const CommonOptions& common);
+int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
+int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
+int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common);
+int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
+int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "drivers/commands/commands.h"
+#include "iga/core/error.h"
 #include "io/hex_mesh_info.h"
 #include "io/spline_info.h"
 #include "io/surface_info.h"
@@ -21,6 +22,13 @@ int run_info(const SurfaceInputOptions& options, const CommonOptions& common) {
         fmt::print("{}\n", common.json ? io::hex_mesh_info_json(mesh)
                                        : io::hex_mesh_info_text(options.surface, mesh));
         return ExitCode::done;
+    }
+    if (!io::is_spline_file(options.surface)) {
+        throw InputError(
+            "info: '{}' is no surface (.stl, .obj, .off, .ply, .vtp), no mesh of hexahedra (.vtk, "
+            "Medit's .mesh), no spline file (.xml, .mesh, .txt, .inp, .h5) and no part; ParaView "
+            "shows what .vtu files hold",
+            options.surface);
     }
     const io::SplineFile file = io::read_splines(options.surface);
     fmt::print("{}\n", common.json ? io::spline_info_json(file) : io::spline_info_text(file));

@@ -17,6 +17,7 @@
 #include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "iga/topology/element_quality.h"
+#include "io/atomic_file.h"
 #include "io/mesh_deck.h"
 #include "io/spline_file.h"
 #include "meshing/surface/curvature_clusters.h"
@@ -87,9 +88,11 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             options.fix || options.fill_holes || options.shell;
         if (has_more) {
             throw InputError(
-                "mesh: with a deck only --stage, --points, --set, --out and --png are options; "
-                "write the "
-                "others into its section [meshing], or --set meshing.KEY=VALUE");
+                "mesh: a deck says itself how it is meshed: write it into its section [meshing], "
+                "or "
+                "--set meshing.KEY=VALUE; only --stage, --points, --set, --out, --png, --resume "
+                "and "
+                "those of all commands stand beside it");
         }
         return io::read_mesh_deck(options.surface, overrides());
     }
@@ -154,6 +157,13 @@ io::MeshDeck deck_of(const MeshOptions& options) {
             "mesh: --layout takes the place of pants: stage {} has no place beside it; add --stage "
             "layout or a later one",
             deck.stage);
+    }
+    if (!deck.layout.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
+                                 options.most_boundaries)) {
+        throw InputError(
+            "mesh: --layout takes the place of cuts; --cycle, --merge and --most-boundaries have "
+            "no "
+            "place beside it");
     }
     if (!deck.like.empty() && (!options.cycle_weights.empty() || !options.merge_weights.empty() ||
                                options.most_boundaries)) {
@@ -228,6 +238,10 @@ void add_solid(const meshing::SolidMesh& solid, nlohmann::ordered_json& object) 
                            {"min_scaled_jacobian", solid.quad_quality->smallest_scaled_jacobian},
                            {"mean_scaled_jacobian", solid.quad_quality->mean_scaled_jacobian},
                            {"hausdorff", solid.quad_quality->hausdorff_distance}};
+        if (solid.field) {
+            object["quads"]["angle_to_field"] =
+                meshing::mean_angle_to_field(*solid.quads, solid.cuboids.mesh, solid.field->field);
+        }
     }
     if (solid.surfaces) {
         const auto& [surfaces, report] = *solid.surfaces;
@@ -408,11 +422,49 @@ void print_text(const MeshStages& stages, MeshStage last) {
     if (stages.solid) print_solid(*stages.solid);
 }
 
+// Writes all stages up to the last one as STEM_STAGE...
+std::vector<std::string> write_stages(const std::filesystem::path& stem, const MeshStages& stages,
+                                      MeshStage last, bool png, const std::string& provenance) {
+    std::vector<std::string> files;
+    for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
+        const auto which = static_cast<MeshStage>(stage);
+        const bool has_no_pants = !stages.pants && last > MeshStage::pants;
+        if (has_no_pants && (which == MeshStage::loops || which == MeshStage::pants)) continue;
+        for (const auto& file :
+             write_mesh_stage(fmt::format("{}_{}", stem.string(), to_string(which)), stages, which,
+                              png, provenance)) {
+            files.push_back(file.string());
+        }
+    }
+    return files;
+}
+
+// Splines that are farther from the surface than wanted.
+void warn_of_distance(const io::MeshDeck& deck, const meshing::SolidMesh& solid) {
+    if (!solid.distance) return;
+    const double distance = solid.distance->surface;
+    constexpr double too_far = 1e-2;
+    if (deck.solid.element_size > 0.0) {
+        if (distance < too_far) return;
+        log::warn(fmt::format(
+            "mesh: the splines are up to {:.2g} of the diagonal away from the surface: smaller "
+            "elements, or a layout with nodes and arcs where it bends, would come nearer",
+            distance));
+    } else if (distance > deck.solid.tolerance) {
+        log::warn(fmt::format(
+            "mesh: the splines are up to {:.2g} of the diagonal away from the surface, the "
+            "tolerance is {:.2g}; no element was made shorter than the triangles or after four "
+            "rounds: finer triangles, or an element_size, would come nearer",
+            distance, deck.solid.tolerance));
+    }
+}
+
 }  // namespace
 
 int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     if (io::is_spline_file(options.surface)) return mesh_splines(options, common);
     const io::MeshDeck deck = deck_of(options);
+    io::require_writable(options.out.empty() ? std::filesystem::path("out") : options.out);
     if (deck.solid.n_points && deck.stage != "hexes") {
         throw InputError("mesh: {} points are for stage hexes, which samples them, not for {}",
                          *deck.solid.n_points, deck.stage);
@@ -427,26 +479,29 @@ int run_mesh(const MeshOptions& options, const CommonOptions& common) {
     const std::string name = std::filesystem::path(options.surface).stem().string();
     const std::filesystem::path folder =
         options.out.empty() ? std::filesystem::path("out") / name : options.out;
+    const std::string provenance =
+        fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
+                    deck.text.empty() ? "" : fmt::format("; deck hash {}", text_hash(deck.text)));
     const Timer timer;
-    const MeshStages stages = run_mesh_stages(deck, folder / (name + "_problems.vtp"));
+    MeshStages stages;
+    try {
+        run_mesh_stages(deck, folder / (name + "_problems.vtp"), stages);
+    } catch (const Error&) {
+        if (const auto reached = reached_stage(stages)) {
+            const auto files =
+                write_stages(folder / name, stages, *reached, options.png, provenance);
+            log::info(fmt::format("mesh: it came as far as stage {}; wrote {}", to_string(*reached),
+                                  fmt::join(files, " ")));
+        }
+        throw;
+    }
     const double seconds = timer.seconds();
     const std::string not_positive = failure(stages);
     const bool is_done = not_positive.empty();
     if (!is_done) log::warn(not_positive);
-    const std::string provenance =
-        fmt::format("couture {} mesh {} --stage {}{}", COUTURE_VERSION, options.surface, deck.stage,
-                    deck.text.empty() ? "" : fmt::format("; deck hash {}", text_hash(deck.text)));
-    std::vector<std::string> files;
-    for (int stage = 0; stage <= static_cast<int>(last); ++stage) {
-        const auto which = static_cast<MeshStage>(stage);
-        const bool has_no_pants = !stages.pants && last > MeshStage::pants;
-        if (has_no_pants && (which == MeshStage::loops || which == MeshStage::pants)) continue;
-        for (const auto& file :
-             write_mesh_stage(folder / fmt::format("{}_{}", name, to_string(which)), stages, which,
-                              options.png, provenance)) {
-            files.push_back(file.string());
-        }
-    }
+    if (stages.solid) warn_of_distance(deck, *stages.solid);
+    std::vector<std::string> files =
+        write_stages(folder / name, stages, last, options.png, provenance);
     if (options.png) {
         for (const auto& file : write_stage_sheets(folder / name, stages)) {
             files.push_back(file.string());

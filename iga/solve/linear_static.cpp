@@ -76,7 +76,9 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
     constraints.to_frames(f);
     const MatrixX b = f - K * constraints.values;
 
-    const std::unique_ptr<LinearSolver> solver = make_linear_solver(options.solver);
+    const std::unique_ptr<LinearSolver> own_solver =
+        options.reused_solver == nullptr ? make_linear_solver(options.solver) : nullptr;
+    LinearSolver* solver = own_solver ? own_solver.get() : options.reused_solver;
     std::vector<std::string> mode_names;
     LinearSystem system{K, constraints.is_fixed, rigid_body_modes(*space, problem, mode_names)};
     constraints.to_frames(system.near_null_space);

@@ -14,6 +14,9 @@ struct LinearStaticOptions {
     SolverOptions solver;
     /// Gauss points per direction and element; nothing: degree + 1 of the space.
     std::optional<int> n_gauss_points;
+    /// Solves instead of a new one: what it knows of the matrix' pattern serves again where that is
+    /// the same. Must outlive the call; null: a new one.
+    LinearSolver* reused_solver = nullptr;
 };
 
 /// One load case or combination.

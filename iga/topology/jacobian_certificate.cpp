@@ -486,8 +486,9 @@ PatchCertificate<d> certify(const Patch<d>& patch, int max_depth) {
         const ElementResult<d>& result = results[e];
         const std::array<int, d> element = element_indices(bezier, e);
         const bool is_reversed = result.orientation != certificate.orientation;
-        certificate.validity =
-            std::max(certificate.validity, is_reversed ? Validity::folded : result.validity);
+        const Validity validity = is_reversed ? Validity::folded : result.validity;
+        certificate.validity = std::max(certificate.validity, validity);
+        if (validity >= Validity::undecided) certificate.unproven.push_back(e);
         // From the element's [0, 1]^d and scaled coordinates to the patch's.
         double scale = std::pow(bezier.size, d);
         for (int k = 0; k < d; ++k) {

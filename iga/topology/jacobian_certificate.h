@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "iga/topology/multipatch.h"
 
@@ -27,6 +28,8 @@ struct PatchCertificate {
     /// Smallest sampled orientation * det J and where.
     double min_jacobian = std::numeric_limits<double>::infinity();
     Vector<d> min_xi = Vector<d>::Zero();
+    /// Elements (first direction fastest) that are undecided or folded.
+    std::vector<int> unproven;
 };
 
 /// Proves the sign of det J of a patch whose dimension is d.

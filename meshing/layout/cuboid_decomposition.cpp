@@ -6,6 +6,7 @@
 #include <set>
 
 #include "iga/core/error.h"
+#include "meshing/layout/blunt_path.h"
 #include "meshing/layout/cut_turns.h"
 #include "meshing/layout/equator.h"
 #include "meshing/layout/glue.h"
@@ -94,7 +95,7 @@ class Drawing {
             for (std::size_t c = 0; c < patch.curves.size(); ++c) {
                 ties.push_back({patch.curves[c].vertices,
                                 glued_nodes(p, choice_.matches[p].curves[c]), true,
-                                patch.curves[c].kind == ArcKind::reflex,
+                                is_blunt(opened_, patch.curves[c].vertices),
                                 fmt::format("sharp edge {} of patch {}", c, p)});
             }
             for (std::size_t l = 0; l < patch.loops.size(); ++l) {
@@ -128,7 +129,7 @@ class Drawing {
         add_ties(loop.vertices, nodes, fixed, fmt::format("curve {}", loop.side.curve), ties);
         for (std::size_t t = first; t < ties.size(); ++t) {
             ties[t].is_feature = is_sharp(ties[t].vertices);
-            ties[t].is_reflex = ties[t].is_feature && is_reflex(ties[t].vertices);
+            ties[t].is_blunt = ties[t].is_feature && is_blunt(opened_, ties[t].vertices);
         }
     }
 
@@ -177,11 +178,6 @@ class Drawing {
         return true;
     }
 
-    [[nodiscard]] bool is_reflex(const std::vector<VertexHandle>& path) const {
-        const EdgeHandle first = opened_.edge_handle(opened_.find_halfedge(path[0], path[1]));
-        return !opened_.is_boundary(first) && kind_along(opened_, path) == ArcKind::reflex;
-    }
-
     const SurfaceMesh& opened_;
     const std::vector<PatchFeatures>& patches_;
     const PantsDecomposition& pants_;
@@ -191,6 +187,18 @@ class Drawing {
     int n_patches_;
     GluedLayout glued_;
 };
+
+// Templates fill what one shell bounds; none of the library surrounds a cavity.
+void check_shells(const PantsDecomposition& pants) {
+    int n_shells = 1;
+    for (const PantsPatch& patch : pants.patches) n_shells = std::max(n_shells, patch.shell + 1);
+    if (n_shells == 1) return;
+    throw TopologyError(
+        "layout: the surface has {} shells, so that the solid has {}; templates of cuboids "
+        "surround "
+        "none: give a layout of cuboids around them ([meshing] layout, --layout)",
+        n_shells, n_shells == 2 ? "a cavity" : fmt::format("{} cavities", n_shells - 1));
+}
 
 // Whether a recorded choice names nodes and arcs that its templates have, and all cuts.
 void check_choice(const LayoutChoice& choice, const PantsDecomposition& pants,
@@ -248,6 +256,7 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
                                            const PantsDecomposition& pants, const ClosingCaps& caps,
                                            const TemplateLibrary& library,
                                            const MatchOptions& options) {
+    check_shells(pants);
     std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
     LayoutChoice choice = choose_layout(opened, patches, pants, library, options);
     turn_smooth_cuts(opened, pants, library, patches, choice);
@@ -260,6 +269,7 @@ CuboidDecomposition decompose_into_cuboids(const SurfaceMesh& opened, const Feat
 CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& features,
                                    const PantsDecomposition& pants, const ClosingCaps& caps,
                                    const TemplateLibrary& library, const LayoutRecord& record) {
+    check_shells(pants);
     std::vector<PatchFeatures> patches = find_patch_features(opened, features, pants);
     const LayoutChoice choice = repeat_choice(opened, record, patches);
     check_choice(choice, pants, library);

@@ -24,6 +24,8 @@ struct CuboidDecomposition {
     VolumetricLayout volume;
     /// The side that each quad of the surface is.
     std::vector<CuboidSide> sides;
+    /// For each arc of the surface the length that it should have; empty: any.
+    std::vector<double> arc_lengths;
     /// For each patch of the decomposition the name of its template.
     std::vector<std::string> templates;
     /// What was decided, for other members of the family; without elements.
@@ -35,9 +37,9 @@ struct CuboidDecomposition {
 ///
 /// @param opened    with numbers of features and of the decomposition's curves on its edges
 /// @param caps      what closes its boundary loops
-/// @throws TopologyError  if no template fits a patch (names the patch, how many feature curves and
-///                        corners it has, and the templates that there are), if no choice fits
-///                        across the cuts, or as embed_layout
+/// @throws TopologyError  if the solid has a cavity, if no template fits a patch (names the patch,
+///                        how many feature curves and corners it has, and the templates that there
+///                        are), if no choice fits across the cuts, or as embed_layout
 ///
 /// Source: [Maquart19] Sec. 3.2, 3.3.2.
 [[nodiscard]] CuboidDecomposition decompose_into_cuboids(

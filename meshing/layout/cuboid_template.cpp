@@ -4,13 +4,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <tuple>
 
 #include "iga/core/disjoint_sets.h"
 #include "iga/core/error.h"
 #include "iga/core/nearest_name.h"
-#include "meshing/topology/cell_complex.h"
+#include "meshing/layout/layout_validity.h"
 
 namespace couture::meshing {
 
@@ -50,6 +51,16 @@ void check_connected(const VolumetricLayout& layout) {
             throw TopologyError("node {} is not connected with node 0", node);
         }
     }
+}
+
+// Patches are pieces of genus 0, so that what fills one and its caps is a ball.
+void check_ball(const VolumeTopology& topology) {
+    if (topology.genera == std::vector<int>{0}) return;
+    const auto n_tunnels = std::accumulate(topology.genera.begin(), topology.genera.end(), 0);
+    throw TopologyError(
+        "the cuboids have {} tunnels and {} cavities; they must be a ball, as a patch of a surface "
+        "and its caps bound one: open a ring at a pair of caps",
+        n_tunnels, topology.genera.size() - 1);
 }
 
 void check_caps(const CuboidTemplate& shape, const LayoutBoundary& boundary) {
@@ -97,7 +108,7 @@ void check_template(const CuboidTemplate& shape) {
     try {
         const LayoutBoundary boundary = layout_boundary(shape.layout);
         check_connected(shape.layout);
-        check_volume_boundary(make_hexahedron_complex(shape.layout.cuboids));
+        check_ball(volume_topology(shape.layout));
         check_positions(shape);
         check_caps(shape, boundary);
     } catch (const InputError& error) {

@@ -32,9 +32,9 @@ struct CuboidTemplate {
 
 /// @throws InputError     for a wrong number of positions, caps that don't fit the sets, nodes out
 ///                        of range or a cuboid that is turned inside out
-/// @throws TopologyError  if the cuboids are no connected volume whose boundary is a manifold, or a
-///                        cap is no disc of outer sides or shares a node with another; all name the
-///                        template and the first offending entity
+/// @throws TopologyError  if the cuboids are no ball whose boundary is a manifold, or a cap is no
+///                        disc of outer sides or shares a node with another; all name the template
+///                        and the first offending entity
 void check_template(const CuboidTemplate& shape);
 
 /// @param cap  in 0 .. n_caps() - 1

@@ -76,7 +76,7 @@ class Drawing {
             while (stop < tie.vertices.size() && tie.vertices[stop] != end) ++stop;
             if (stop == tie.vertices.size()) {
                 throw TopologyError("{}: node {} of the layout lies elsewhere or out of order",
-                                    tie.name, tie.nodes[k + 1]);
+                                    tie.name, layout_.node_name(tie.nodes[k + 1]));
             }
             const int arc = draw_arc(tie.nodes[k], tie.nodes[k + 1],
                                      {tie.vertices.begin() + static_cast<std::ptrdiff_t>(start),
@@ -90,15 +90,15 @@ class Drawing {
     int draw_arc(int from, int to, std::vector<VertexHandle> path, const std::string& who) {
         const int arc = layout_.find_arc(from, to);
         if (is_drawn(arc)) {
-            throw TopologyError("{}: the arc of nodes {} and {} is drawn already", who, from, to);
+            throw TopologyError("{}: the arc of nodes {} is drawn already", who,
+                                layout_.arc_name(arc));
         }
         for (std::size_t k = 0; k + 1 < path.size(); ++k) {
             int& curve =
                 mesh_.data(mesh_.edge_handle(mesh_.find_halfedge(path[k], path[k + 1]))).curve;
             if (curve >= 0) {
-                throw TopologyError("{}: vertices {} and {} lie on the arc of nodes {} and {} too",
-                                    who, path[k].idx(), path[k + 1].idx(),
-                                    layout_.arcs()[curve].from, layout_.arcs()[curve].to);
+                throw TopologyError("{}: vertices {} and {} lie on the arc of nodes {} too", who,
+                                    path[k].idx(), path[k + 1].idx(), layout_.arc_name(curve));
             }
             curve = arc;
         }
@@ -142,7 +142,7 @@ class Drawing {
                 throw TopologyError(
                     "layout: no tie runs along the quads around node {}; each part of the layout "
                     "needs one",
-                    layout_.quads()[regions[r].quads()[0]][0]);
+                    layout_.node_name(layout_.quads()[regions[r].quads()[0]][0]));
             }
             if (!layout_region.emplace(*region, r).second) {
                 const auto& place = regions[r].loops()[0][0];
@@ -160,11 +160,10 @@ class Drawing {
     }
 
     [[noreturn]] void throw_regions_differ(const QuadLayout::Side& side) const {
-        const QuadLayout::Arc& arc = layout_.arcs()[side.arc];
         throw TopologyError(
-            "layout: the ties around the region beside the arc of nodes {} and {} bound one region "
-            "of the layout, but not one of the surface",
-            arc.from, arc.to);
+            "layout: the ties around the region beside the arc of nodes {} bound one region of the "
+            "layout, but not one of the surface",
+            layout_.arc_name(side.arc));
     }
 
     void draw_region(const LayoutRegion& region) {
@@ -206,12 +205,11 @@ class Drawing {
             return;
         }
         const auto& place = region.loops()[0][0];
-        const QuadLayout::Arc& arc = layout_.arcs()[layout_.sides(place.quad)[place.side].arc];
         throw TopologyError(
-            "layout: beside the arc of nodes {} and {} the layout has a region with {} boundary "
-            "loops and Euler characteristic {}, the surface one with {} and {}",
-            arc.from, arc.to, region.loops().size(), region.euler_characteristic(), n_loops,
-            piece.euler_characteristic());
+            "layout: beside the arc of nodes {} the layout has a region with {} boundary loops and "
+            "Euler characteristic {}, the surface one with {} and {}",
+            layout_.arc_name(layout_.sides(place.quad)[place.side].arc), region.loops().size(),
+            region.euler_characteristic(), n_loops, piece.euler_characteristic());
     }
 
     // The vertex of the piece at which a side of the region's boundary starts.
@@ -274,7 +272,8 @@ class Drawing {
         std::vector<int> vertices = paths.vertices_to(to);
         if (vertices.size() < 2) {
             throw GeometryError("layout: there is no way from node {} to node {} on the surface",
-                                region.node(path.front()), region.node(path.back()));
+                                layout_.node_name(region.node(path.front())),
+                                layout_.node_name(region.node(path.back())));
         }
         while (vertices.size() - 1 < 2 * (path.size() - 1)) {
             std::size_t longest = 0;
@@ -309,7 +308,8 @@ class Drawing {
             const int from = region.node(path[k]);
             const int to = region.node(path[k + 1]);
             if (k > 0) embedded_.nodes[from] = arc.front();
-            draw_arc(from, to, std::move(arc), fmt::format("arc of nodes {} and {}", from, to));
+            draw_arc(from, to, std::move(arc),
+                     fmt::format("arc of nodes {}", layout_.arc_name(layout_.find_arc(from, to))));
         }
     }
 
@@ -381,8 +381,9 @@ class Drawing {
                 int& quad = embedded_.quad_of_face[face.idx()];
                 if (quad == q) continue;
                 if (quad >= 0) {
-                    throw GeometryError("layout: quads {} and {} hang together on the surface",
-                                        quad, q);
+                    throw GeometryError(
+                        "layout: the quads of nodes {} and of {} hang together on the surface",
+                        layout_.quad_name(quad), layout_.quad_name(q));
                 }
                 quad = q;
                 for (const auto h : mesh_.fh_range(face)) {

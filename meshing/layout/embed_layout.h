@@ -17,9 +17,9 @@ struct LayoutTie {
     /// one at the last vertex, the others anywhere between, in this order.
     std::vector<int> nodes;
     bool is_feature = false;
-    /// Of a feature: whether the solid fills too much around it for the corner of one cuboid; more
-    /// than half a turn always is.
-    bool is_reflex = false;
+    /// Of a feature: whether the solid fills too much around it for the corner of one cuboid (see
+    /// the function is_blunt).
+    bool is_blunt = false;
     /// Named in messages.
     std::string name;
 };

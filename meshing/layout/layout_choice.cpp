@@ -72,9 +72,13 @@ class Chooser {
             std::ranges::count_if(patch.nodes, [](const auto& node) { return node.loop < 0; });
         throw TopologyError(
             "layout: no template fits patch {} with {} boundary loops, {} sharp edges and {} "
-            "corners inside. Templates with so many caps: {}. Let cuts cross sharp edges, not run "
-            "along them (another criterion, loops), or add a template",
-            p, patch.loops.size(), patch.curves.size(), n_corners, names.empty() ? "none" : names);
+            "corners inside. Templates with so many caps: {}. {}Take plane faces off as caps "
+            "(open, open_facing), add a template, or lay the cuboids by hand (layout)",
+            p, patch.loops.size(), patch.curves.size(), n_corners, names.empty() ? "none" : names,
+            std::ranges::any_of(patch.loops,
+                                [&](const auto& loop) { return is_cut(loop.side.curve); })
+                ? "Let cuts cross sharp edges, not run along them (another criterion, loops). "
+                : "");
     }
 
     // Whether all loops have vertices for their nodes.

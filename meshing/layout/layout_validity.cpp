@@ -36,7 +36,8 @@ std::optional<int> find_pinched_node(const QuadLayout& layout) {
 /// What keeps it from being a layout of a surface; empty if nothing does.
 std::string fault_of_layout(const QuadLayout& layout, int chi) {
     if (const auto node = find_pinched_node(layout)) {
-        return fmt::format("quads touch at node {} only; around a node they form one fan", *node);
+        return fmt::format("quads touch at node {} only; around a node they form one fan",
+                           layout.node_name(*node));
     }
     const std::vector<int> valence = layout.valences();
     const std::vector<bool> on_boundary = layout.boundary_nodes();
@@ -45,8 +46,8 @@ std::string fault_of_layout(const QuadLayout& layout, int chi) {
     for (int node = 0; node < layout.n_nodes(); ++node) {
         if (valence[node] == 0) continue;
         if (!on_boundary[node] && valence[node] < 3) {
-            return fmt::format("inner node {} has {} arcs; at least 3 must meet", node,
-                               valence[node]);
+            return fmt::format("inner node {} has {} arcs; at least 3 must meet",
+                               layout.node_name(node), valence[node]);
         }
         const int term = on_boundary[node] ? 3 - valence[node] : 4 - valence[node];
         four_sum += term;
@@ -55,7 +56,7 @@ std::string fault_of_layout(const QuadLayout& layout, int chi) {
     if (four_sum == 4 * chi) return {};
     const std::string where =
         irregular
-            ? fmt::format("; first irregular node: {} ({}valence {})", *irregular,
+            ? fmt::format("; first irregular node: {} ({}valence {})", layout.node_name(*irregular),
                           on_boundary[*irregular] ? "on the boundary, " : "", valence[*irregular])
             : "; all nodes are regular";
     return fmt::format(
@@ -170,7 +171,8 @@ QuadLayout close_boundaries(const QuadLayout& layout, const std::vector<Boundary
 VolumeTopology volume_topology(const VolumetricLayout& layout) {
     const LayoutBoundary boundary = layout_boundary(layout);
     if (const auto node = find_pinched_node(boundary.layout)) {
-        throw TopologyError("the boundary of the cuboids touches itself at node {}", *node);
+        throw TopologyError("the boundary of the cuboids touches itself at node {}",
+                            boundary.layout.node_name(*node));
     }
     const CellComplex volume = make_hexahedron_complex(layout.cuboids);
     check_volume_boundary(volume);

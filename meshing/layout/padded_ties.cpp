@@ -13,7 +13,7 @@ namespace {
 // Nodes behind the first one up to the last, over none that is taken: a sheet that ends beside an
 // arc divides those that meet it.
 std::vector<int> shortest_way(const QuadLayout& layout, const std::vector<bool>& is_taken, int from,
-                              int to) {
+                              int to, const std::string& who) {
     if (layout.find_arc(from, to) >= 0) return {to};
     std::vector<std::vector<int>> neighbours(layout.n_nodes());
     for (const QuadLayout::Arc& arc : layout.arcs()) {
@@ -32,9 +32,11 @@ std::vector<int> shortest_way(const QuadLayout& layout, const std::vector<bool>&
     }
     if (before[to] < 0) {
         throw TopologyError(
-            "layout: padding leaves no way from node {} to node {} clear of other "
-            "ties",
-            from, to);
+            "layout: {}: padding leaves no way from node {} to node {} clear of other sharp edges: "
+            "sheets of cuboids end beside it all around. Take other cuboids there, or let the "
+            "edges "
+            "around it be all sharp or all smooth (another feature angle)",
+            who, layout.node_name(from), layout.node_name(to));
     }
     std::vector<int> way;
     for (int node = to; node != from; node = before[node]) way.push_back(node);
@@ -48,7 +50,7 @@ PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> 
     const LayoutBoundary before = layout_boundary(volume);
     std::vector<bool> is_smooth(before.layout.n_arcs(), true);
     for (const LayoutTie& tie : ties) {
-        if (!tie.is_feature || tie.is_reflex) continue;
+        if (!tie.is_feature || tie.is_blunt) continue;
         for (std::size_t k = 0; k + 1 < tie.nodes.size(); ++k) {
             is_smooth[before.layout.find_arc(tie.nodes[k], tie.nodes[k + 1])] = false;
         }
@@ -63,7 +65,8 @@ PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> 
         std::vector<int> nodes{padded.node_in_place[tie.nodes[0]]};
         for (std::size_t k = 1; k < tie.nodes.size(); ++k) {
             const int next = padded.node_in_place[tie.nodes[k]];
-            for (const int node : shortest_way(after.layout, is_taken, nodes.back(), next)) {
+            for (const int node :
+                 shortest_way(after.layout, is_taken, nodes.back(), next, tie.name)) {
                 nodes.push_back(node);
                 is_taken[node] = true;
             }

@@ -17,11 +17,12 @@ struct PaddedTies {
     std::vector<int> node_in_place;
 };
 
-/// Arcs on ties of features that are not reflex are sharp, all others smooth (pad_layout). Nodes
+/// Arcs on ties of features that are not blunt are sharp, all others smooth (pad_layout). Nodes
 /// of ties become those in their place; a sheet that ends beside an arc divides it.
 ///
 /// @param ties  on the nodes of the volume
-/// @throws InputError, TopologyError  as pad_layout
+/// @throws InputError, TopologyError  as pad_layout; TopologyError if sheets leave a tie no arcs to
+///                                    run along that no other tie takes: names the tie
 [[nodiscard]] PaddedTies pad_with_ties(const VolumetricLayout& volume, std::vector<LayoutTie> ties);
 
 /// Pads a volume and draws its boundary along ties on the mesh of a decomposition; sets the

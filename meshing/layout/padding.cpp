@@ -104,7 +104,12 @@ class Sheet {
             if (!is_chosen_[q]) continue;
             for (const int node : boundary_.layout.quads()[q]) {
                 int& copy = padded_.node_in_place[node];
-                if (copy == node) copy = layout.n_nodes++;
+                if (copy != node) continue;
+                copy = layout.n_nodes++;
+                if (!layout.node_names.empty()) {
+                    layout.node_names.resize(layout.n_nodes);
+                    std::swap(layout.node_names[node], layout.node_names[copy]);
+                }
             }
         }
     }
@@ -226,7 +231,7 @@ PaddedLayout insert_sheet(const VolumetricLayout& layout, const std::vector<Cubo
         if (n_borders(boundary.layout, arcs_at[node], is_chosen) > 2) {
             throw TopologyError(
                 "a sheet touches itself at node {}; choose all sides or one fan of them there",
-                node);
+                node_name(layout.node_names, node));
         }
     }
     return Sheet(layout, boundary, is_chosen, is_smooth).take();

@@ -20,7 +20,8 @@ namespace couture::meshing {
 /// A layout with sheets of cuboids along its wall.
 struct PaddedLayout {
     /// The old cuboids and nodes come first and keep their numbers, but old nodes at a sheet lie
-    /// inside now, or on the sides where the sheet ends. Sets hold what lies where their sides lay.
+    /// inside now, or on the sides where the sheet ends. Sets hold what lies where their sides lay,
+    /// names go to the nodes in place.
     VolumetricLayout layout;
     /// For each old node that which lies in its place.
     std::vector<int> node_in_place;

@@ -82,9 +82,11 @@ class Matcher {
             for (const auto& loop : sketch.loops) on_loops.push_back(loop.size());
             const auto n_corners =
                 std::ranges::count_if(sketch.nodes, [](const auto& node) { return node.loop < 0; });
-            return fmt::format(
-                "{} sharp edges, {} corners inside and boundary loops that {} of them meet",
-                sketch.curves.size(), n_corners, fmt::join(on_loops, ", "));
+            return fmt::format("{} sharp edges, {} corners inside and {}", sketch.curves.size(),
+                               n_corners,
+                               on_loops.empty() ? std::string("no boundary loops")
+                                                : fmt::format("boundary loops that {} of them meet",
+                                                              fmt::join(on_loops, ", ")));
         };
         throw TopologyError("features don't match the reference: {}; the reference has {}",
                             text(second_), text(first_));

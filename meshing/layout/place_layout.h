@@ -12,17 +12,16 @@ namespace couture::meshing {
 /// or at a feature with an interior angle of more than 120 degrees, around which the corners of two
 /// cuboids are better.
 ///
-/// Feature corners take the nearest nodes, one to one; then nodes with two or more sharp arcs that
-/// are near a feature curve lie on it, and arcs between nodes on features follow these where the
-/// way along them is about as short as the arc. Then it is padded. Where that does not cut the surface into discs,
-/// arcs are drawn as shortest paths near to their straight lines, until it does; nodes on them lie
-/// where the surface is nearest. The remaining arcs are those of embed_layout. A feature along
-/// which no arc runs is treated as smooth, see untied_length.
+/// Arcs that lie near features are tied to these (tie_features), then it is padded and more arcs
+/// are drawn where the surface is not cut into discs yet (cut_into_discs). The remaining arcs are
+/// those of embed_layout. A feature along which no arc runs is treated as smooth, see
+/// untied_length.
 ///
 /// @param mesh      closed, with numbers of features on its edges
 /// @param features  its own
 /// @param most_reach  no node moves farther to a feature, but for the length of an edge
-/// @return templates empty; sets are those of the layout
+/// @return templates empty; sets are those of the layout; arcs should be as long as they are in it,
+///         but on features, where they should stay as they are
 /// @throws TopologyError  if surface and layout have different Euler characteristics, or no feature
 ///                        of the surface runs along arcs of the layout
 /// @throws TopologyError, GeometryError  if an arc can't be drawn: names its nodes

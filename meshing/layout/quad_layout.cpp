@@ -11,7 +11,8 @@ namespace {
 
 std::pair<int, int> in_order(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-void check_corners(const std::array<int, 4>& quad, int number, int n_nodes) {
+void check_corners(const std::array<int, 4>& quad, int number, int n_nodes,
+                   const std::vector<std::string>& names) {
     for (int k = 0; k < 4; ++k) {
         if (quad[k] < 0 || quad[k] >= n_nodes) {
             throw InputError("quad {} of the layout has corner {}; nodes are 0 to {}", number,
@@ -19,7 +20,8 @@ void check_corners(const std::array<int, 4>& quad, int number, int n_nodes) {
         }
         for (int l = 0; l < k; ++l) {
             if (quad[k] == quad[l]) {
-                throw InputError("quad {} of the layout has node {} twice", number, quad[k]);
+                throw InputError("quad {} of the layout has node {} twice", number,
+                                 node_name(names, quad[k]));
             }
         }
     }
@@ -27,10 +29,11 @@ void check_corners(const std::array<int, 4>& quad, int number, int n_nodes) {
 
 }  // namespace
 
-QuadLayout::QuadLayout(int n_nodes, std::vector<std::array<int, 4>> quads)
-    : n_nodes_(n_nodes), quads_(std::move(quads)) {
+QuadLayout::QuadLayout(int n_nodes, std::vector<std::array<int, 4>> quads,
+                       std::vector<std::string> node_names)
+    : n_nodes_(n_nodes), quads_(std::move(quads)), node_names_(std::move(node_names)) {
     for (int q = 0; q < n_quads(); ++q) {
-        check_corners(quads_[q], q, n_nodes);
+        check_corners(quads_[q], q, n_nodes, node_names_);
         for (int k = 0; k < 4; ++k) {
             arc_of_nodes_.emplace(in_order(quads_[q][k], quads_[q][(k + 1) % 4]), 0);
         }
@@ -51,13 +54,24 @@ QuadLayout::QuadLayout(int n_nodes, std::vector<std::array<int, 4>> quads)
             if (place.quad >= 0) {
                 throw TopologyError(
                     "quads {} and {} of the layout both run from node {} to node {}: turn one "
-                    "over, "
-                    "or take one away where more than two meet",
-                    place.quad, q, from, to);
+                    "over, or take one away where more than two meet",
+                    place.quad, q, node_name(from), node_name(to));
             }
             place = {q, k};
         }
     }
+}
+
+std::string QuadLayout::node_name(int node) const { return meshing::node_name(node_names_, node); }
+
+std::string QuadLayout::arc_name(int arc) const {
+    return fmt::format("{} and {}", node_name(arcs_[arc].from), node_name(arcs_[arc].to));
+}
+
+std::string QuadLayout::quad_name(int quad) const {
+    std::array<std::string, 4> names;
+    std::ranges::transform(quads_[quad], names.begin(), [&](int node) { return node_name(node); });
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 int QuadLayout::find_arc(int from, int to) const {
@@ -119,6 +133,12 @@ std::vector<int> QuadLayout::sheets() const {
     return sheet;
 }
 
+std::string node_name(const std::vector<std::string>& names, int node) {
+    const auto n = static_cast<std::size_t>(node);
+    return n < names.size() && !names[n].empty() ? fmt::format("'{}'", names[n])
+                                                 : std::to_string(node);
+}
+
 std::vector<std::vector<int>> boundary_loops(const QuadLayout& layout) {
     std::map<int, int> next;
     for (int a = 0; a < layout.n_arcs(); ++a) {
@@ -129,7 +149,7 @@ std::vector<std::vector<int>> boundary_loops(const QuadLayout& layout) {
             throw TopologyError(
                 "the boundary of the layout passes node {} twice: quads touch there at the node "
                 "only",
-                from);
+                layout.node_name(from));
         }
     }
     std::vector<std::vector<int>> loops;

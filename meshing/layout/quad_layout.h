@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,9 +33,17 @@ class QuadLayout {
     /// @throws InputError     for a node out of range or one that stands twice in a quad
     /// @throws TopologyError  for an arc with more than two quads, or two that run along it in the
     ///                        same direction; names the quad and the nodes
-    QuadLayout(int n_nodes, std::vector<std::array<int, 4>> quads);
+    /// @param node_names  that messages call nodes by: of the first ones, empty for none
+    QuadLayout(int n_nodes, std::vector<std::array<int, 4>> quads,
+               std::vector<std::string> node_names = {});
 
     [[nodiscard]] int n_nodes() const { return n_nodes_; }
+    /// What messages call a node: its name in quotes, or its number.
+    [[nodiscard]] std::string node_name(int node) const;
+    /// Names of the nodes at the ends of an arc: "a and b".
+    [[nodiscard]] std::string arc_name(int arc) const;
+    /// Names of the nodes of a quad: "a, b, c, d".
+    [[nodiscard]] std::string quad_name(int quad) const;
     [[nodiscard]] int n_arcs() const { return static_cast<int>(arcs_.size()); }
     [[nodiscard]] int n_quads() const { return static_cast<int>(quads_.size()); }
     [[nodiscard]] const std::vector<std::array<int, 4>>& quads() const { return quads_; }
@@ -67,11 +76,15 @@ class QuadLayout {
   private:
     int n_nodes_ = 0;
     std::vector<std::array<int, 4>> quads_;
+    std::vector<std::string> node_names_;
     std::vector<Arc> arcs_;
     std::vector<std::array<Side, 4>> sides_;
     std::vector<std::array<ArcQuad, 2>> arc_quads_;
     std::map<std::pair<int, int>, int> arc_of_nodes_;
 };
+
+/// What messages call a node: its name in quotes if there is one, else its number.
+[[nodiscard]] std::string node_name(const std::vector<std::string>& names, int node);
 
 /// Nodes along each boundary loop, the quads on the left; the smallest node of each first, loops in
 /// the order of these.

@@ -23,7 +23,7 @@ void check_tie(const SurfaceMesh& mesh, const QuadLayout& layout, const LayoutTi
     for (std::size_t k = 0; k + 1 < tie.nodes.size(); ++k) {
         if (layout.find_arc(tie.nodes[k], tie.nodes[k + 1]) < 0) {
             throw TopologyError("{}: no arc joins nodes {} and {} of the layout", tie.name,
-                                tie.nodes[k], tie.nodes[k + 1]);
+                                layout.node_name(tie.nodes[k]), layout.node_name(tie.nodes[k + 1]));
         }
     }
     for (std::size_t k = 0; k + 1 < tie.vertices.size(); ++k) {
@@ -115,7 +115,7 @@ class Placement {
         VertexHandle& fixed = place_[node].vertex;
         if (fixed.is_valid() && fixed != vertex) {
             throw TopologyError("{}: node {} of the layout would lie at vertices {} and {}",
-                                tie.name, node, fixed.idx(), vertex.idx());
+                                tie.name, layout_.node_name(node), fixed.idx(), vertex.idx());
         }
         fixed = vertex;
     }
@@ -127,7 +127,7 @@ class Placement {
                 Place& place = place_[tie.nodes[k]];
                 if (place.tie >= 0 || place.vertex.is_valid()) {
                     throw TopologyError("{}: node {} of the layout lies on another tie already",
-                                        tie.name, tie.nodes[k]);
+                                        tie.name, layout_.node_name(tie.nodes[k]));
                 }
                 place.tie = static_cast<int>(t);
                 place.position = static_cast<int>(k);

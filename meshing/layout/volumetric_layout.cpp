@@ -18,9 +18,17 @@ void check_nodes(const VolumetricLayout& layout) {
         }
         const auto twice = std::ranges::adjacent_find(nodes);
         if (twice != nodes.end()) {
-            throw InputError("cuboid {} of the layout has node {} twice", c, *twice);
+            throw InputError("cuboid {} of the layout has node {} twice", c,
+                             node_name(layout.node_names, *twice));
         }
     }
+}
+
+// Names of some nodes.
+std::string names_of(const VolumetricLayout& layout, const std::array<int, 4>& nodes) {
+    std::vector<std::string> names;
+    for (const int node : nodes) names.push_back(node_name(layout.node_names, node));
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 // The quad that starts with its smallest node.
@@ -72,7 +80,7 @@ LayoutBoundary layout_boundary(const VolumetricLayout& layout) {
         if (sides.size() > 2) {
             throw TopologyError("cuboids {}, {} and {} of the layout share the face of nodes {}",
                                 sides[0].cuboid, sides[1].cuboid, sides[2].cuboid,
-                                fmt::join(nodes, ", "));
+                                names_of(layout, nodes));
         }
         std::array<int, 4> opposite = layout.nodes_of(sides[1]);
         std::ranges::reverse(opposite);
@@ -80,11 +88,12 @@ LayoutBoundary layout_boundary(const VolumetricLayout& layout) {
             throw TopologyError(
                 "cuboids {} and {} of the layout share the nodes {}, but don't lie on two sides of "
                 "one face: renumber the corners of one",
-                sides[0].cuboid, sides[1].cuboid, fmt::join(nodes, ", "));
+                sides[0].cuboid, sides[1].cuboid, names_of(layout, nodes));
         }
     }
     std::ranges::sort(boundary.sides);
-    boundary.layout = QuadLayout(layout.n_nodes, quads_of(layout, boundary.sides));
+    boundary.layout =
+        QuadLayout(layout.n_nodes, quads_of(layout, boundary.sides), layout.node_names);
     return boundary;
 }
 

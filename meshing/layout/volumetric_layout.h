@@ -30,6 +30,8 @@ struct VolumetricLayout {
     std::vector<std::array<int, 8>> cuboids;
     /// Named outer sides.
     std::map<std::string, std::vector<CuboidSide>> sets;
+    /// That messages call nodes by: of the first ones, empty for none.
+    std::vector<std::string> node_names = {};
 
     [[nodiscard]] int n_cuboids() const { return static_cast<int>(cuboids.size()); }
     /// Nodes of a side, counter-clockwise seen from outside the cuboid.

@@ -44,7 +44,7 @@ std::vector<LayoutPlace> layout_places(const SurfaceMesh& mesh, const EmbeddedLa
                 throw TopologyError(
                     "EmbeddedLayout: node {} has vertex {}; each node of an arc needs one of its "
                     "own",
-                    node, vertex.idx());
+                    layout.node_name(node), vertex.idx());
             }
             places[vertex.idx()].node = node;
         }
@@ -57,7 +57,8 @@ std::vector<LayoutPlace> layout_places(const SurfaceMesh& mesh, const EmbeddedLa
             throw TopologyError(
                 "EmbeddedLayout: arc {} does not run from node {} (vertex {}) to node {} (vertex "
                 "{})",
-                a, from, embedding.nodes[from].idx(), to, embedding.nodes[to].idx());
+                a, layout.node_name(from), embedding.nodes[from].idx(), layout.node_name(to),
+                embedding.nodes[to].idx());
         }
         for (std::size_t i = 1; i < path.size(); ++i) {
             if (!mesh.find_halfedge(path[i - 1], path[i]).is_valid()) {

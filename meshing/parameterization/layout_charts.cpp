@@ -35,10 +35,17 @@ LayoutCharts::LayoutCharts(const QuadLayout& layout, std::vector<int> cells)
         std::array<int, 4> n{};
         for (int k = 0; k < 4; ++k) n[k] = cells_[layout.sides(q)[k].arc];
         if (n[0] != n[2] || n[1] != n[3] || n[0] < 1 || n[1] < 1) {
+            const auto& sides = layout.sides(q);
+            std::string found;
+            for (int k = 0; k < 4; ++k) {
+                found += fmt::format("{}{} on the arc of nodes {}", k == 0 ? "" : ", ", n[k],
+                                     layout.arc_name(sides[k].arc));
+            }
             throw InputError(
-                "LayoutCharts: the sides of quad {} have {}, {}, {}, {} cells; sides that face "
-                "each other must have the same positive number",
-                q, n[0], n[1], n[2], n[3]);
+                "LayoutCharts: the sides of quad {} have these cells: {}; arcs that face each "
+                "other "
+                "must have the same positive number",
+                q, found);
         }
         sizes_.push_back({n[0], n[1]});
     }

@@ -35,7 +35,7 @@ class LayoutCharts {
   public:
     /// @param cells  along each arc
     /// @throws InputError  unless there is a positive number for each arc, and the same one for
-    ///                     arcs that face each other; names the quad
+    ///                     arcs that face each other; names the quad and its arcs
     LayoutCharts(const QuadLayout& layout, std::vector<int> cells);
 
     [[nodiscard]] const std::vector<int>& cells() const { return cells_; }

@@ -348,7 +348,8 @@ std::vector<Vector2> map_quad(CutSurface& piece, const EmbeddedLayout& embedding
         }
         return std::move(map.parameters);
     } catch (const Error& error) {
-        throw GeometryError("make_layout_map: quad {}: {}", quad, error.what());
+        throw GeometryError("make_layout_map: quad of nodes {}: {}",
+                            embedding.layout.quad_name(quad), error.what());
     }
 }
 
@@ -362,8 +363,9 @@ std::vector<Vector2> harmonic_start(const SurfaceMesh& mesh, const EmbeddedLayou
     std::vector<Vector2> x(mesh.n_vertices(), Vector2::Zero());
     for (int q = 0; q < embedding.layout.n_quads(); ++q) {
         if (faces[q].empty()) {
-            throw TopologyError("EmbeddedLayout: quad {} has no face; each quad is a disc of faces",
-                                q);
+            throw TopologyError(
+                "EmbeddedLayout: the quad of nodes {} has no face; each quad is a disc of faces",
+                embedding.layout.quad_name(q));
         }
         CutSurface piece(mesh, faces[q], is_seam);
         const std::vector<Vector2> parameters = map_quad(piece, embedding, charts, q);
@@ -499,7 +501,8 @@ LayoutMap make_layout_map(const SurfaceMesh& mesh, const EmbeddedLayout& embeddi
     }
     energy.fit_cell_size(x);
     map.report.energies.push_back(energy.value(x));
-    if (options.route == LayoutMapRoute::quadratic) minimise_squares(energy, options, x, map.report);
+    if (options.route == LayoutMapRoute::quadratic)
+        minimise_squares(energy, options, x, map.report);
     if (options.route == LayoutMapRoute::aligned) minimise(energy, options, x, map.report);
     map.report.n_flipped = energy.n_flipped(x);
     map.report.cell_size = energy.cell_size();

@@ -37,17 +37,21 @@ std::vector<CellCorner> cell_corners(const EmbeddedLayout& embedding, const Samp
     // Positions among the cell's corners, counter-clockwise, of each corner's three points.
     constexpr int members[4][3] = {{0, 1, 3}, {0, 1, 2}, {3, 2, 1}, {3, 2, 0}};
     constexpr int along_t[4][3] = {{-1, 0, 1}, {0, -1, 1}, {0, 1, -1}, {1, 0, -1}};
-    const std::vector<int> sheets = embedding.layout.sheets();
     std::vector<CellCorner> corners;
     for (int q = 0; q < embedding.layout.n_quads(); ++q) {
         const auto [n_s, n_t] = grid.sizes[q];
-        Vector2 lengths(1.0, 1.0);
-        for (int k = 0; k < 2 && !cell_lengths.empty(); ++k) {
-            lengths[k] = cell_lengths[sheets[embedding.layout.sides(q)[k].arc]];
-        }
+        const auto& sides = embedding.layout.sides(q);
+        // Part of the way from one side to the opposite one.
+        const auto between = [&](int side, int opposite, double part) {
+            if (cell_lengths.empty()) return 1.0;
+            return (1.0 - part) * cell_lengths[sides[side].arc] +
+                   part * cell_lengths[sides[opposite].arc];
+        };
         for (int cell = 0; cell < n_s * n_t; ++cell) {
             const int first = cell / n_s * (n_s + 1) + cell % n_s;
             const int above = first + n_s + 1;
+            const Vector2 lengths(between(0, 2, (cell / n_s + 0.5) / n_t),
+                                  between(3, 1, (cell % n_s + 0.5) / n_s));
             const std::array<int, 4> places{first, first + 1, above + 1, above};
             for (int k = 0; k < 4; ++k) {
                 CellCorner& corner = corners.emplace_back();
@@ -473,6 +477,11 @@ void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocatio
 RelocatedSamples relocate_nodes(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,
                                 const LayoutSamples& samples,
                                 const NodeRelocationOptions& options) {
+    const auto n_lengths = static_cast<int>(options.cell_lengths.size());
+    if (n_lengths > 0 && n_lengths != embedding.layout.n_arcs()) {
+        throw InputError("relocate_nodes: {} lengths of cells for {} arcs; give none or all",
+                         n_lengths, embedding.layout.n_arcs());
+    }
     const SampleGrid grid = make_sample_grid(embedding.layout, samples.n_cells);
     const SurfaceSlide slide(mesh, embedding, grid);
     CellEnergy energy(mesh, embedding, grid, slide, options.cell_lengths);

@@ -8,7 +8,8 @@
 namespace couture::meshing {
 
 struct NodeRelocationOptions {
-    /// Wanted length of a cell next to that of the others, for each sheet; empty: all the same.
+    /// Wanted length of the cells along each arc next to that of the others, linear between
+    /// opposite arcs of a quad; empty: all the same.
     std::vector<double> cell_lengths;
     int max_iterations = 60;
     /// It ends when a step lowers the energy by less than this part of it.

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+
+#include "meshing/field/direction_field.h"
+#include "meshing/layout/layout_samples.h"
 #include "meshing/surface/quad_grid.h"
 #include "meshing/surface/surface_mesh.h"
 
@@ -26,5 +30,24 @@ struct QuadQuality {
 ///
 /// Source: [Knupp01] for the scaled Jacobian.
 [[nodiscard]] QuadQuality quad_quality(const QuadMesh& quads, const SurfaceMesh& mesh);
+
+/// A corner of a cell that turns against the surface.
+struct TurnedCorner {
+    /// Of the layout.
+    int quad = -1;
+    Vector3 place = Vector3::Zero();
+};
+
+/// The worst of the corners of a grid's cells that turn against the surface, with the normal of the
+/// face nearest to the middle of the cell: that where the sine of the angle is least; nothing if
+/// none does.
+[[nodiscard]] std::optional<TurnedCorner> worst_turned_corner(const LayoutSamples& samples,
+                                                              const SurfaceMesh& mesh);
+
+/// Mean angle in [0, pi/4], weighted by area, between the directions of a grid's cells, from the
+/// middle of a side to that of the opposite one, and the nearest direction of a cross field in the
+/// face nearest to the cell's middle.
+[[nodiscard]] double mean_angle_to_field(const LayoutSamples& samples, const SurfaceMesh& mesh,
+                                         const DirectionField& field);
 
 }  // namespace couture::meshing

@@ -42,13 +42,15 @@ void check_options(const SolidMeshOptions& options) {
     }
 }
 
-// Elements of each sheet of the volume: the median of the lengths of its arcs on the surface,
-// weighted by these lengths, over the wanted size.
+// Elements of each sheet of the volume: the median of the wanted lengths of its arcs on the
+// surface, weighted by these lengths, over the wanted size.
 std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const LayoutCells& cells,
                                   const SolidMeshOptions& options) {
     const double size = options.element_size > 0.0 ? options.element_size
                                                    : bounding_box_diagonal(cuboids.mesh) / 20.0;
-    const std::vector<double> lengths = arc_lengths(cuboids.mesh, cuboids.surface);
+    const std::vector<double> lengths = cuboids.arc_lengths.empty()
+                                            ? arc_lengths(cuboids.mesh, cuboids.surface)
+                                            : cuboids.arc_lengths;
     std::vector<std::vector<double>> of_sheet(cells.n_sheets());
     const QuadLayout& layout = cuboids.surface.layout;
     for (int a = 0; a < layout.n_arcs(); ++a) {
@@ -66,8 +68,10 @@ std::vector<int> elements_by_size(const CuboidDecomposition& cuboids, const Layo
             half -= l;
             if (half <= 0.0) break;
         }
+        constexpr double most_of_sheet = 1e6;
         elements.push_back(
-            std::max(options.min_elements, static_cast<int>(std::lround(median / size))));
+            std::max(options.min_elements,
+                     static_cast<int>(std::min(std::round(median / size), most_of_sheet))));
     }
     return elements;
 }
@@ -96,17 +100,63 @@ std::vector<double> wanted_lengths(const CuboidDecomposition& cuboids, const Lay
     return lengths;
 }
 
+// @throws InputError  if there are more elements than can be worked on
+void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements,
+                      double element_size) {
+    constexpr double most_elements = 2e6;
+    double n_elements = 0.0;
+    for (const std::array<int, 12>& edges : cells.cuboid_edges) {
+        double product = 1.0;
+        for (const int k : {0, 4, 8}) product *= elements[cells.sheets[edges[k]]];
+        n_elements += product;
+    }
+    if (n_elements > most_elements) {
+        throw InputError(
+            "mesh: an element size of {:.3g} makes {:.3g} elements, at most {:.0g} are; take a "
+            "larger one",
+            element_size, n_elements, most_elements);
+    }
+}
+
 // Decides on elements and on names of outer sides.
 void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
                      const SolidMeshOptions& options) {
     cuboids.record.elements = elements_by_size(cuboids, cells, options);
     cuboids.record.base_elements = cuboids.record.elements;
+    check_n_elements(cells, cuboids.record.elements, options.element_size);
     if (!options.faces) return;
     for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
         std::vector<CuboidSide>& set = cuboids.volume.sets[name];
         set.insert(set.end(), sides.begin(), sides.end());
     }
     cuboids.record.sets = cuboids.volume.sets;
+}
+
+// In words, where the grid turns against the surface.
+std::string place_of_worst(const SurfaceMesh& mesh, const LayoutSamples& samples) {
+    const std::optional<TurnedCorner> worst = worst_turned_corner(samples, mesh);
+    if (!worst) return "";
+    return fmt::format(", the worst near ({:.6g}, {:.6g}, {:.6g}) in the quad of nodes {}",
+                       worst->place.x(), worst->place.y(), worst->place.z(),
+                       samples.layout.quad_name(worst->quad));
+}
+
+// Wanted lengths of the cells of each arc, next to each other: of an outside layout those that its
+// arcs have there, else those of the sheets; none if all are the same.
+std::vector<double> cell_lengths_of_arcs(const SolidMesh& solid,
+                                         const std::vector<double>& of_sheets) {
+    const QuadLayout& layout = solid.cuboids.surface.layout;
+    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
+    const std::vector<int> sheets = layout.sheets();
+    std::vector<double> of_arcs;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        if (!lengths.empty()) {
+            of_arcs.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
+        } else if (!of_sheets.empty()) {
+            of_arcs.push_back(of_sheets[sheets[a]]);
+        }
+    }
+    return of_arcs;
 }
 
 // Quads of the map with their nodes in better places. The map turns none over, but large ones may
@@ -116,7 +166,7 @@ RelocatedSamples relocate(const SolidMesh& solid, const std::vector<double>& cel
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     const EmbeddedLayout& surface = solid.cuboids.surface;
     NodeRelocationOptions relocation;
-    relocation.cell_lengths = cell_lengths;
+    relocation.cell_lengths = cell_lengths_of_arcs(solid, cell_lengths);
     relocation.max_iterations = options.max_relocations;
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     for (int n = 2; n <= 4 && relocated.report.n_inverted > 0; n *= 2) {
@@ -133,11 +183,10 @@ void make_quads(SolidMesh& solid, const std::vector<double>& cell_lengths,
     RelocatedSamples relocated = relocate(solid, cell_lengths, options);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
-            "mesh: {} corners of quads stay turned over on the surface: the cuboids are too "
+            "mesh: {} corners of quads stay turned over on the surface{}: the cuboids are too "
             "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
-            "loop) "
-            "or templates help, or smaller elements",
-            relocated.report.n_inverted);
+            "loop) or templates help, other places of a layout's nodes, or smaller elements",
+            relocated.report.n_inverted, place_of_worst(mesh, relocated.samples));
     }
     solid.relocation = relocated.report;
     solid.quads = std::move(relocated.samples);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <cmath>
 
 #include "iga/core/error.h"
+#include "meshing/pipeline/rounded_edges.h"
 #include "meshing/surface/surface_distance.h"
+#include "meshing/surface/triangle_tree.h"
 
 namespace couture::meshing {
 
@@ -88,6 +91,27 @@ std::array<int, 2> element_of(const QuadSpline& spline, int n_samples, int trian
     return {cell % n_s / n_samples, cell / n_s / n_samples};
 }
 
+// The largest from the ends and middles of the edges of the mesh on rounded edges. A length.
+double distance_of_rounded_edges(const CuboidDecomposition& cuboids,
+                                 const std::vector<SpaceTriangle>& splines) {
+    const std::vector<RoundedEdge> rounded = find_rounded_edges(cuboids);
+    if (rounded.empty()) return 0.0;
+    const TriangleTree tree(splines);
+    const SurfaceMesh& mesh = cuboids.mesh;
+    double largest = 0.0;
+    for (const RoundedEdge& one : rounded) {
+        for (const EdgeHandle edge : one.edges) {
+            const HalfedgeHandle h = mesh.halfedge_handle(edge, 0);
+            for (const Vector3& x :
+                 {mesh.point(mesh.from_vertex_handle(h)), mesh.point(mesh.to_vertex_handle(h)),
+                  mesh.calc_edge_midpoint(edge)}) {
+                largest = std::max(largest, std::sqrt(tree.nearest(x).squared_distance));
+            }
+        }
+    }
+    return largest;
+}
+
 // The largest length of each of n groups, over the diagonal.
 std::vector<double> largest_of(const std::vector<double>& lengths, const std::vector<int>& groups,
                                int n, double diagonal) {
@@ -129,6 +153,7 @@ VolumeDistance distance_of(const std::vector<QuadSpline>& splines,
         first = last;
     }
     distance.surface = std::ranges::max(distance.of_quads);
+    distance.rounded = distance_of_rounded_edges(cuboids, triangles) / diagonal;
     std::vector<SpaceTriangle> features;
     for (int a = 0; a < layout.n_arcs(); ++a) {
         if (!cuboids.surface.is_feature_arc[a]) continue;

@@ -14,6 +14,8 @@ struct VolumeDistance {
     double surface = 0.0;
     /// Between edges of patches along sharp edges and these; 0 if there are none.
     double features = 0.0;
+    /// From sharp edges that no arc runs along to the splines, one way; 0 if there are none.
+    double rounded = 0.0;
     /// The largest of each quad of the layout, and of each of its arcs along sharp edges; 0 for
     /// other arcs.
     std::vector<double> of_quads;

@@ -18,6 +18,18 @@ void Cutting::split_chords() {
     extend_factors();
 }
 
+void Cutting::split_chords(std::span<const int> points) {
+    surface.split_chords();
+    std::vector<char> is_closed = boundary_vertices(surface);
+    for (const int v : points) is_closed[v] = 1;
+    const int n = surface.n_vertices();
+    for (int h = 0; h < surface.n_halfedges(); ++h) {
+        if (surface.twin(h) < h || std::max(surface.origin(h), surface.target(h)) >= n) continue;
+        if (is_closed[surface.origin(h)] && is_closed[surface.target(h)]) surface.split_edge(h);
+    }
+    extend_factors();
+}
+
 void Cutting::split_spokes() {
     const int n = surface.n_vertices();
     for (int h = 0; h < surface.n_halfedges(); ++h) {
@@ -149,6 +161,38 @@ bool has_repeated(const std::vector<int>& vertices) {
     return std::set<int>(vertices.begin(), vertices.end()).size() != vertices.size();
 }
 
+// From the left to the right copy of a vertex through points by shortest paths, each of which
+// opens the surface.
+//
+// @param is_sorted  whether the points come in this order, or the nearest one next
+std::optional<CylinderCycle> cycle_by_paths(Cutting& cutting, int left, int right,
+                                            std::vector<int> points, bool is_sorted) {
+    CutSurface& surface = cutting.surface;
+    CylinderCycle cycle;
+    points.push_back(right);
+    int source = left;
+    while (!points.empty()) {
+        cutting.split_chords(points);
+        std::vector<char> is_blocked = boundary_vertices(surface);
+        for (const int v : points) is_blocked[v] = 1;
+        const std::size_t n_choices = is_sorted ? 1 : std::max<std::size_t>(1, points.size() - 1);
+        const auto path = shortest_path(
+            cutting, {source},
+            {points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n_choices)}, is_blocked);
+        if (!path) return std::nullopt;
+        const ShortestPaths lengths = cutting.paths();
+        for (const int h : *path) {
+            cycle.vertices.push_back(surface.original(surface.origin(h)));
+            cycle.weight += lengths.weight(h);
+        }
+        source = surface.target(path->back());
+        std::erase(points, source);
+        if (source != right) cutting.slice(*path);
+    }
+    if (has_repeated(cycle.vertices)) return std::nullopt;
+    return cycle;
+}
+
 }  // namespace
 
 std::optional<CylinderCycle> find_cycle_around(Cutting& cylinder, const std::vector<int>& inner,
@@ -173,6 +217,7 @@ std::optional<CylinderCycle> find_cycle_through(Cutting& cylinder, const std::ve
                                                 const std::vector<int>& outer,
                                                 const std::vector<int>& points) {
     CutSurface& surface = cylinder.surface;
+    cylinder.split_chords(points);
     // Opened along a path from end to end through the first point and no other.
     std::vector<char> is_blocked = boundary_vertices(surface);
     for (const int v : points) is_blocked[v] = 1;
@@ -187,12 +232,11 @@ std::optional<CylinderCycle> find_cycle_through(Cutting& cylinder, const std::ve
     const int last_before = gamma[in->size() - 1];
     const int twin_behind = surface.twin(last_before);
 
-    std::vector<int> order;
-    if (points.size() > 1) {
+    std::vector<int> order(points.begin() + 1, points.end());
+    if (order.size() > 1) {
         CutSurface opened = surface;
         const auto corners = open_annulus(opened, gamma);
         const AnnulusMap map = map_opened_annulus(opened, corners, 1.0, 1.0, false);
-        order.assign(points.begin() + 1, points.end());
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
             // What lies left of the opening is on the right of the rectangle.
             return map.map.parameters[a].x() > map.map.parameters[b].x();
@@ -201,25 +245,12 @@ std::optional<CylinderCycle> find_cycle_through(Cutting& cylinder, const std::ve
     cylinder.slice(gamma);
     const int left = surface.target(last_before);
     const int right = surface.origin(twin_behind);
-    CylinderCycle cycle;
-    int source = left;
-    order.push_back(right);
-    for (const int target : order) {
-        cylinder.split_chords();
-        is_blocked = boundary_vertices(surface);
-        for (const int v : order) is_blocked[v] = 1;
-        const auto path = shortest_path(cylinder, {source}, {target}, is_blocked);
-        if (!path) return std::nullopt;
-        const ShortestPaths lengths = cylinder.paths();
-        for (const int h : *path) {
-            cycle.vertices.push_back(surface.original(surface.origin(h)));
-            cycle.weight += lengths.weight(h);
-        }
-        if (target != right) cylinder.slice(*path);
-        source = target;
-    }
-    if (has_repeated(cycle.vertices)) return std::nullopt;
-    return cycle;
+    Cutting sorted = cylinder;
+    const auto in_order = cycle_by_paths(sorted, left, right, order, true);
+    const auto to_nearest = cycle_by_paths(cylinder, left, right, order, false);
+    if (to_nearest && (!in_order || to_nearest->weight < in_order->weight)) return to_nearest;
+    cylinder = std::move(sorted);
+    return in_order;
 }
 
 }  // namespace couture::meshing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "meshing/surface/cut_surface.h"
@@ -17,6 +18,9 @@ struct Cutting {
 
     void slice(const std::vector<int>& path);
     void split_chords();
+    /// Chords, and edges that join two of some vertices, or one of them and the boundary: whatever
+    /// is not blocked by these vertices and the boundary can be reached around them.
+    void split_chords(std::span<const int> points);
     /// Splits the edges that end on the boundary: a ring of vertices around it.
     void split_spokes();
     [[nodiscard]] ShortestPaths paths() const {
@@ -53,10 +57,12 @@ struct CylinderCycle {
                                                              const std::vector<int>& outer,
                                                              std::vector<char> is_blocked);
 
-/// A short closed path around a cylinder through given vertices inside: in the order in which they
-/// lie around it (by a harmonic map to a rectangle), from one to the next by shortest paths.
+/// A short closed path around a cylinder through given vertices inside, from one to the next by
+/// shortest paths: in the order in which they lie around it by a harmonic map to a rectangle, or to
+/// the nearest one each time, whichever is shorter. The map alone may have them in a bad order
+/// where the cylinder winds.
 ///
-/// @param cylinder  is opened along the way; without chords
+/// @param cylinder  is opened along the way
 /// @param points    at least one vertex, none of them on the boundary
 /// @return nothing if there is no such path
 ///

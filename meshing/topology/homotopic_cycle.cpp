@@ -161,7 +161,7 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(const std::vector<int>& p
     cycle.path.push_back(cutting.surface.target(path.back()));
 
     cutting.slice(path);
-    if (room != Room::at_cuts) cutting.split_chords();
+    if (room != Room::at_cuts) cutting.split_chords(points_);
     std::vector<std::vector<int>> others;
     for (std::size_t k = 0; k < loops_.size(); ++k) {
         if (static_cast<int>(k) == i || static_cast<int>(k) == j) continue;
@@ -171,7 +171,7 @@ std::optional<HomotopicCycle> HomotopicCycles::find_on(const std::vector<int>& p
     for (const auto& connection : connecting_paths(cutting, others, points_)) {
         cutting.slice(unopened(cutting.surface, connection));
     }
-    if (room != Room::at_cuts) cutting.split_chords();
+    if (room != Room::at_cuts) cutting.split_chords(points_);
     if (room == Room::made) cutting.split_spokes();
 
     const auto ends = cutting.surface.boundary_loops();

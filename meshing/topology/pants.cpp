@@ -103,10 +103,10 @@ class Decomposer {
     void cut_handles_of(int shell) {
         if (shells_[shell].genus == 0) return;
         report("looking for handle and tunnel loops", 0.0);
-        const bool has_pants = is_cut_into_pants(shells_[shell]);
+        const bool is_cut = is_cut_into_pants(shells_[shell]) || options_.cuts_tori;
         HandleCutOptions options{.first_given = n_boundaries_,
-                                 .only_given = options_.only_given_loops && has_pants,
-                                 .cuts = has_pants || options_.cuts_tori};
+                                 .only_given = options_.only_given_loops && is_cut,
+                                 .cuts = is_cut};
         if (!cycle_criterion_.is_plain_length()) {
             options.tightened = [&](const SurfaceCurve& curve) { return tightened(curve); };
         }
@@ -147,8 +147,11 @@ class Decomposer {
                 throw InputError("pants: {} = {}; it must be positive", name, value);
             }
         }
-        const bool has_pants = std::any_of(shells_.begin(), shells_.end(), is_cut_into_pants);
-        if (!has_pants && !(options_.loops.empty() && options_.cycles_through.empty())) {
+        const bool is_cut =
+            std::any_of(shells_.begin(), shells_.end(), [&](const SurfaceInvariants& shell) {
+                return is_cut_into_pants(shell) || (options_.cuts_tori && shell.genus > 0);
+            });
+        if (!is_cut && !(options_.loops.empty() && options_.cycles_through.empty())) {
             throw InputError(
                 "pants: loops or points are given, but the surface has Euler characteristic {}: a "
                 "sphere, disc, cylinder or torus is not cut into pants",
@@ -206,6 +209,35 @@ class Decomposer {
         for (int v = 0; v < piece.n_vertices(); ++v) {
             factor.push_back(
                 cycle_criterion_.factor(mesh_.data(VertexHandle(piece.parent(v))).source));
+        }
+        return factor;
+    }
+
+    // The same for a cycle through vertices of the mesh: a sharp edge that passes two of them is
+    // followed, whatever the criterion says of others.
+    [[nodiscard]] std::vector<double> factors_through(const CutSurface& piece,
+                                                      const std::set<int>& vertices) const {
+        const auto features_at = [&](int v) {
+            std::set<int> features;
+            for (const auto edge : mesh_.ve_range(VertexHandle(v))) {
+                if (mesh_.data(edge).feature >= 0) features.insert(mesh_.data(edge).feature);
+            }
+            return features;
+        };
+        std::map<int, int> n_vertices;
+        for (const int v : vertices) {
+            for (const int feature : features_at(v)) ++n_vertices[feature];
+        }
+        std::erase_if(n_vertices, [](const auto& entry) { return entry.second < 2; });
+        std::vector<double> factor = factors(piece);
+        if (n_vertices.empty()) return factor;
+        factor.resize(piece.n_vertices(), 1.0);
+        const double followed = 0.5 * *std::ranges::min_element(factor);
+        for (int v = 0; v < piece.n_vertices(); ++v) {
+            const std::set<int> features = features_at(piece.parent(v));
+            if (std::ranges::any_of(features, [&](int f) { return n_vertices.contains(f); })) {
+                factor[v] = followed;
+            }
         }
         return factor;
     }
@@ -400,7 +432,7 @@ class Decomposer {
                     loops.size() < 4 ? "they lie in a pant already"
                                      : "a curve divides them from each other");
             }
-            const HomotopicCycles cycles(piece, factors(piece), inside);
+            const HomotopicCycles cycles(piece, factors_through(piece, wanted), inside);
             const PantsCurves::Sides sides = curves_.sides_of(piece, cycles.loops());
             for (std::size_t i = 0; i < sides.size(); ++i) {
                 for (std::size_t j = i + 1; j < sides.size(); ++j) {

@@ -82,7 +82,7 @@ struct PantsOptions {
     /// Order of the boundary loops (see boundary_loops) among the curves; empty: as they are.
     std::vector<int> boundary_order = {};
     /// Points on the surface; for each list a cycle is made that passes them, around the two loops
-    /// for which it is shortest (Alg. 3.3).
+    /// for which it is shortest (Alg. 3.3). It follows sharp edges that pass two of them.
     std::vector<std::vector<Vector3>> cycles_through = {};
     /// Pants are put together again to patches of up to so many boundary loops (3 to 6), where the
     /// tube between them is short: see merge_ratio.

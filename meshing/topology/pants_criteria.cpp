@@ -4,66 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <unordered_map>
 
 #include "iga/core/error.h"
 #include "meshing/surface/curvature.h"
+#include "meshing/surface/point_grid.h"
 
 namespace couture::meshing {
 
 namespace {
-
-// Points in cells of a grid, to find near ones.
-class PointGrid {
-  public:
-    PointGrid(const std::vector<Vector3>& points, double cell) : points_(points), cell_(cell) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            cells_[key(cell_of(points[i]))].push_back(static_cast<int>(i));
-        }
-    }
-
-    // Distance to the nearest point, at most about one cell.
-    [[nodiscard]] double distance(const Vector3& x) const {
-        const auto centre = cell_of(x);
-        double nearest = cell_;
-        for (int i = -1; i <= 1; ++i) {
-            for (int j = -1; j <= 1; ++j) {
-                for (int k = -1; k <= 1; ++k) {
-                    const auto cell =
-                        cells_.find(key({centre[0] + i, centre[1] + j, centre[2] + k}));
-                    if (cell == cells_.end()) continue;
-                    for (const int p : cell->second) {
-                        nearest = std::min(nearest, (points_[p] - x).norm());
-                    }
-                }
-            }
-        }
-        return nearest;
-    }
-
-  private:
-    using Cell = std::array<std::int64_t, 3>;
-
-    [[nodiscard]] Cell cell_of(const Vector3& x) const {
-        return {static_cast<std::int64_t>(std::floor(x[0] / cell_)),
-                static_cast<std::int64_t>(std::floor(x[1] / cell_)),
-                static_cast<std::int64_t>(std::floor(x[2] / cell_))};
-    }
-    static std::uint64_t key(const Cell& cell) {
-        std::uint64_t hash = 0;
-        for (const std::int64_t c : cell) {
-            hash = (hash ^ static_cast<std::uint64_t>(c)) * 0x9E3779B97F4A7C15ULL;
-            hash ^= hash >> 29U;
-        }
-        return hash;
-    }
-
-    const std::vector<Vector3>& points_;
-    double cell_;
-    std::unordered_map<std::uint64_t, std::vector<int>> cells_;
-};
 
 // Directions that can be normals of mirror planes.
 std::vector<Vector3> candidate_normals(const Matrix<3>& inertia) {
@@ -149,7 +98,8 @@ std::vector<SymmetryPlane> find_symmetry_planes(const SurfaceMesh& mesh) {
     points.insert(points.end(), centres.begin(), centres.end());
 
     const double diagonal = bounding_box_diagonal(mesh);
-    const PointGrid grid(points, 2.0 * edge);
+    PointGrid grid(2.0 * edge);
+    for (const Vector3& point : points) grid.add(point);
     const std::size_t stride = std::max<std::size_t>(1, points.size() / 2000);
     std::vector<SymmetryPlane> planes;
     for (const Vector3& normal : candidate_normals(inertia)) {

@@ -232,6 +232,9 @@ PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
     PantsOptions options;
     options.loop_width = width;
     options.only_given_loops = true;
+    options.cuts_tori = std::any_of(
+        record.curves.begin(), record.curves.end(),
+        [](const PantsRecord::Curve& one) { return one.kind == PantsCurveKind::handle; });
     options.boundary_names = boundary_names;
     options.boundary_order = match_boundaries(record, mesh, boundary_names, warp);
     for (const auto& curve : record.curves) {

@@ -276,7 +276,10 @@ ParameterizedVolume fill_volume(const VolumetricLayout& layout, const LayoutCell
     if (straight.report.validity == iga::Validity::valid) return straight;
     bend_edges(cells, nets);
     ParameterizedVolume bent = parameterize_volume(make_multipatch(layout, cells, nets), options);
-    return bent.report.validity < straight.report.validity ? bent : straight;
+    const auto rank = [](const ParameterizationReport& report) {
+        return std::pair(report.validity, -report.min_scaled_jacobian_after);
+    };
+    return rank(bent.report) < rank(straight.report) ? bent : straight;
 }
 
 }  // namespace

@@ -44,6 +44,8 @@ constexpr double min_slide = 0.01;
 /// Regularisation of a folded start, halved after each round down to the last.
 constexpr double first_regularization = 0.5;
 constexpr double last_regularization = 1e-3;
+/// Keeps elements from shrinking while they unfold.
+constexpr double size_weight = 0.2;
 /// A sample counts as unfolded above this inverse mean ratio.
 constexpr double unfolded = 1e-6;
 
@@ -172,7 +174,8 @@ void unfold(ShapeEnergy& energy, Minimizer& minimizer, const MatrixX& start, int
     double regularization = first_regularization;
     ShapeSummary worst = energy.summary(points);
     for (int i = 0; i < max_rounds && worst.min_inverse_mean_ratio < unfolded; ++i) {
-        minimizer.start(points, {.power = 1, .regularization = regularization});
+        minimizer.start(points,
+                        {.power = 1, .regularization = regularization, .size_weight = size_weight});
         report.untangling_rounds += minimizer.round() ? 1 : 0;
         points = minimizer.points();
         worst = energy.summary(points);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <optional>
 
 #include "iga/core/error.h"
 #include "iga/topology/dof_map.h"
@@ -19,8 +21,12 @@ constexpr std::array<int, 3> powers{2, 4, 8};
 /// Regularisation of a folded start, halved after each round down to the last.
 constexpr double first_regularization = 0.5;
 constexpr double last_regularization = 1e-3;
+/// Keeps elements from shrinking while they unfold.
+constexpr double size_weight = 0.2;
 /// A sample counts as unfolded above this inverse mean ratio.
 constexpr double unfolded = 1e-6;
+/// States that are unfolded at all samples, but not between them, start again with more samples.
+constexpr int max_attempts = 4;
 /// Boxes are no flatter than this: thin layers may have more even elements.
 constexpr double max_aspect = 20.0;
 
@@ -76,21 +82,17 @@ class Parameterizer {
     ParameterizedVolume run() {
         ParameterizationReport report;
         report.min_scaled_jacobian_before = keep();
-        unfold(report);
-        for (std::size_t i = 0; i < powers.size() && is_unfolded(); ++i) {
-            const ShapeMeasure measure{.power = powers[i]};
-            descent_.start(points_, measure);
-            double value = energy_.value(points_, measure);
-            for (int round = 0; round < options_.max_rounds; ++round) {
-                points_ = descent_.descend(points_, tangents_, options_.steps_per_round);
-                ++report.rounds;
-                (void)keep();
-                const double next = energy_.value(points_, measure);
-                if (!(next < (1.0 - options_.tolerance) * value)) break;
-                value = next;
-            }
+        for (int attempt = 0; attempt < max_attempts; ++attempt) {
+            unfold(report);
+            improve(report);
+            const bool has_learnt = choose(report);
+            if (!has_learnt || is_proven(result_->report)) break;
+            points_ = states_.front().points;
+            (void)keep();
         }
-        return best(report);
+        result_->report.rounds = report.rounds;
+        result_->report.untangling_rounds = report.untangling_rounds;
+        return std::move(*result_);
     }
 
   private:
@@ -124,7 +126,9 @@ class Parameterizer {
         energy_.set_reference(points_);
         double regularization = first_regularization;
         while (!is_unfolded() && report.untangling_rounds < options_.max_untangling_rounds) {
-            descent_.start(points_, {.power = 1, .regularization = regularization});
+            descent_.start(
+                points_,
+                {.power = 1, .regularization = regularization, .size_weight = size_weight});
             points_ = descent_.descend(points_, tangents_, options_.steps_per_round);
             ++report.untangling_rounds;
             (void)keep();
@@ -132,26 +136,54 @@ class Parameterizer {
         }
     }
 
-    // Certificates cost as much as some rounds: the first valid one in the order of the states ends
-    // the search.
-    ParameterizedVolume best(ParameterizationReport report) {
-        std::stable_sort(states_.begin(), states_.end(), [](const State& a, const State& b) {
-            return a.min_scaled_jacobian > b.min_scaled_jacobian;
-        });
-        std::optional<ParameterizedVolume> result;
-        for (const State& state : states_) {
-            if (result && state.min_scaled_jacobian <= 0.0) break;
-            ParameterizedVolume found{with_points(start_, dofs_, state.points), report};
-            certify(found);
-            found.report.min_scaled_jacobian_after = state.min_scaled_jacobian;
-            const bool is_better = !result || found.report.validity < result->report.validity;
-            if (is_better) result = std::move(found);
-            if (result->report.validity <= iga::Validity::degenerate) break;
+    void improve(ParameterizationReport& report) {
+        for (std::size_t i = 0; i < powers.size() && is_unfolded(); ++i) {
+            const ShapeMeasure measure{.power = powers[i]};
+            descent_.start(points_, measure);
+            double value = energy_.value(points_, measure);
+            for (int round = 0; round < options_.max_rounds; ++round) {
+                points_ = descent_.descend(points_, tangents_, options_.steps_per_round);
+                ++report.rounds;
+                (void)keep();
+                const double next = energy_.value(points_, measure);
+                if (!(next < (1.0 - options_.tolerance) * value)) break;
+                value = next;
+            }
         }
-        return std::move(*result);
     }
 
-    static void certify(ParameterizedVolume& found) {
+    // Certifies states, the best first, until one is proven. Elements of which nothing is proven
+    // get more samples, by which all states are judged again; whether it took such to find that no
+    // state is unfolded.
+    bool choose(const ParameterizationReport& report) {
+        for (bool has_learnt = false;; has_learnt = true) {
+            std::ranges::stable_sort(states_, std::greater{}, &State::min_scaled_jacobian);
+            const State& best = states_.front();
+            ParameterizedVolume found{with_points(start_, dofs_, best.points), report};
+            found.report.min_scaled_jacobian_after = best.min_scaled_jacobian;
+            const bool has_new_samples = certify(found);
+            if (!result_ || is_better(found.report, result_->report)) result_ = std::move(found);
+            if (is_proven(result_->report) || best.min_scaled_jacobian <= 0.0 || !has_new_samples) {
+                return has_learnt;
+            }
+            for (State& state : states_) {
+                state.min_scaled_jacobian = judge_.summary(state.points).min_scaled_jacobian;
+            }
+        }
+    }
+
+    static bool is_proven(const ParameterizationReport& report) {
+        return report.validity <= iga::Validity::degenerate;
+    }
+    static bool is_better(const ParameterizationReport& a, const ParameterizationReport& b) {
+        return a.validity < b.validity ||
+               (a.validity == b.validity &&
+                a.min_scaled_jacobian_after > b.min_scaled_jacobian_after);
+    }
+
+    // Whether elements of which nothing is proven get samples that they did not have.
+    bool certify(ParameterizedVolume& found) {
+        bool has_new_samples = false;
         auto& report = found.report;
         for (int p = 0; p < found.volume.n_patches(); ++p) {
             const auto certificate = iga::certify<3>(found.volume.patches[p]);
@@ -166,7 +198,10 @@ class Parameterizer {
                 report.validity = validity;
                 report.worst_patch = p;
             }
+            (void)energy_.sample_densely(p, certificate.unproven);
+            has_new_samples = judge_.sample_densely(p, certificate.unproven) || has_new_samples;
         }
+        return has_new_samples;
     }
 
     const MultiPatch<3>& start_;
@@ -180,6 +215,8 @@ class Parameterizer {
     TangentFrames tangents_;
     std::vector<State> states_;
     double min_inverse_mean_ratio_ = 0.0;
+    /// The best of those certified.
+    std::optional<ParameterizedVolume> result_;
 };
 
 }  // namespace

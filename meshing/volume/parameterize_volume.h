@@ -36,7 +36,9 @@ struct ParameterizedVolume {
 /// Elements tend to boxes with the proportions of their patch's mean edges: minimises the
 /// ShapeEnergy with growing power; a folded start is first unfolded with a regularised measure. Of
 /// the states passed the one with the largest minimum of the scaled Jacobian is returned among
-/// those whose certificate is valid; if there is none, the best: see the report.
+/// those whose certificate is valid; elements of which a certificate proves nothing are sampled
+/// densely from then on, also between the corners of their edges and faces, and if that leaves no
+/// state unfolded it is done again from the best. If none gets valid, the best: see the report.
 ///
 /// Patches must be right-handed in intent: det J is to become positive. Results do not depend on
 /// the number of threads.

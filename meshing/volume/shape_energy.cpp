@@ -20,8 +20,33 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int elements_per_chunk = 16;
 /// Corners with a smaller inverse mean ratio count as singular in the starting geometry.
 constexpr double singular_ratio = 1e-9;
-/// 3 sqrt(3): |J|^3 over det J of the identity.
-const double cube_ratio = 3.0 * std::sqrt(3.0);
+
+/// Samples of an element in one direction: its ends, Gauss points, or evenly from end to end.
+std::vector<double> sample_places(int kind, int n) {
+    constexpr int gauss = 1;
+    if (kind == gauss) return iga::gauss_rule(n).points;
+    std::vector<double> places;
+    for (int i = 0; i < n; ++i) places.push_back(i / (n - 1.0));
+    return places;
+}
+
+/// See ShapeEnergy::PatchTables::corners_around.
+///
+/// @param has_ends  whether the first and the last sample of each direction are ends
+std::vector<unsigned char> corners_around(const std::array<iga::BasisTable, 3>& tables,
+                                          bool has_ends) {
+    constexpr std::array<unsigned, 3> low_corners{0b01010101, 0b00110011, 0b00001111};
+    const int n = tables[0].n_points * tables[1].n_points * tables[2].n_points;
+    std::vector<unsigned char> result(n, 0b11111111);
+    for (int q = 0; q < n && has_ends; ++q) {
+        for (int k = 0, rest = q; k < 3; rest /= tables[k].n_points, ++k) {
+            const int i = rest % tables[k].n_points;
+            if (i == 0) result[q] &= low_corners[k];
+            if (i + 1 == tables[k].n_points) result[q] &= ~low_corners[k];
+        }
+    }
+    return result;
+}
 
 /// Coordinates times weight, and the weight.
 using Row = Eigen::Array4d;
@@ -39,56 +64,6 @@ void for_each(int n, const std::function<void(int)>& body) {
     }
 }
 
-double integer_power(double x, int power) {
-    double result = 1.0;
-    for (; power > 0; power >>= 1) {
-        result *= (power & 1) != 0 ? x : 1.0;
-        x *= x;
-    }
-    return result;
-}
-
-double element_size_cubed(const Matrix<3>& J) {
-    const double squared = J.squaredNorm() / 3.0;
-    return squared * std::sqrt(squared);
-}
-
-/// 1 / mean ratio, negative where folded; 0 for a zero matrix.
-double inverse_mean_ratio(const Matrix<3>& J, int orientation) {
-    const double cubed = element_size_cubed(J);
-    return cubed > 0.0 ? orientation * J.determinant() / cubed : 0.0;
-}
-
-/// mu^power of one sample and its derivative by J.
-struct SampleEnergy {
-    double value = infinity;
-    Matrix<3> by_J = Matrix<3>::Zero();
-};
-
-/// @param delta  added to det J, see ShapeMeasure::regularization
-SampleEnergy sample_energy(const Matrix<3>& J, int orientation, int power, double delta) {
-    SampleEnergy result;
-    Matrix<3> cofactor;
-    cofactor.col(0) = J.col(1).cross(J.col(2));
-    cofactor.col(1) = J.col(2).cross(J.col(0));
-    cofactor.col(2) = J.col(0).cross(J.col(1));
-    const double det = orientation * J.col(0).dot(cofactor.col(0));
-    const double root = std::sqrt(det * det + 4.0 * delta * delta);
-    // The second form loses no digits for det < 0.
-    const double h = delta == 0.0 ? det
-                     : det > 0.0  ? 0.5 * (det + root)
-                                  : 2.0 * delta * delta / (root - det);
-    const double squared = J.squaredNorm();
-    if (!(h > 0.0) || !(squared > 0.0)) {
-        return result;
-    }
-    const double mu = squared * std::sqrt(squared) / (cube_ratio * h);
-    result.value = integer_power(mu, power);
-    // d ln h / d det = 1 / root, with root = det for delta = 0.
-    result.by_J = power * result.value * (3.0 / squared * J - orientation / root * cofactor);
-    return result;
-}
-
 }  // namespace
 
 /// Sum factorisation on one element: values and derivatives at all samples of one kind, and the
@@ -99,9 +74,11 @@ class ShapeEnergy::Element {
         Row value, d0, d1, d2;
     };
 
-    /// Moves to an element and evaluates the rows at its corners (kind 0) and Gauss points (1).
-    void load(const PatchTables& patch, int i_element, const MatrixX& points) {
+    /// Moves to an element and evaluates the rows at its corners, and at its Gauss points or its
+    /// dense samples.
+    void load(const PatchTables& patch, int i_element, const MatrixX& points, bool is_dense) {
         patch_ = &patch;
+        inner_kind_ = is_dense ? dense : gauss;
         for (int k = 0; k < 3; ++k) {
             element_[k] = i_element % patch.n_elements[k];
             i_element /= patch.n_elements[k];
@@ -121,8 +98,23 @@ class ShapeEnergy::Element {
                 }
             }
         }
-        forward(0);
-        forward(1);
+        forward(Kind::corners);
+        forward(inner_kind_);
+    }
+
+    /// Visits the samples that count, but for those between singular corners only, as long as
+    /// `visit` returns true.
+    template <typename Visit>
+    void for_each_sample(unsigned singular_corners, const Visit& visit) const {
+        for (const Kind kind : {Kind::corners, inner_kind_}) {
+            // Dense samples have the corners among them.
+            if (kind == Kind::corners && inner_kind_ == dense) continue;
+            const auto& corners_around = patch_->corners_around[kind];
+            for (std::size_t q = 0; q < corners_around.size(); ++q) {
+                if ((corners_around[q] & ~singular_corners) == 0) continue;
+                if (!visit(kind, static_cast<int>(q))) return;
+            }
+        }
     }
 
     [[nodiscard]] int orientation() const { return patch_->orientation; }
@@ -134,7 +126,15 @@ class ShapeEnergy::Element {
         }
         return result;
     }
-    [[nodiscard]] int n_samples(int kind) const { return static_cast<int>(points_[kind].size()); }
+    [[nodiscard]] int n_samples(unsigned singular_corners) const {
+        int n = 0;
+        for_each_sample(singular_corners, [&](Kind, int) { return ++n > 0; });
+        return n;
+    }
+
+    [[nodiscard]] int n_samples_of(Kind kind) const {
+        return static_cast<int>(points_[kind].size());
+    }
 
     [[nodiscard]] Vector3 position(int kind, int q) const {
         const Row& value = points_[kind][q].value;
@@ -152,7 +152,7 @@ class ShapeEnergy::Element {
     [[nodiscard]] Hexahedron corners() const {
         Hexahedron result;
         for (int q = 0; q < 8; ++q) {
-            result.col(q) = position(0, q);
+            result.col(q) = position(Kind::corners, q);
         }
         return result;
     }
@@ -163,7 +163,7 @@ class ShapeEnergy::Element {
             const int n = patch_->tables[kind][k].n_points;
             const int i = q % n;
             q /= n;
-            const double t = kind == 0 ? i : iga::gauss_rule(n).points[i];
+            const double t = sample_places(kind, n)[i];
             result[k] = (1.0 - t) * patch_->breakpoints[k][element_[k]] +
                         t * patch_->breakpoints[k][element_[k] + 1];
         }
@@ -171,7 +171,7 @@ class ShapeEnergy::Element {
     }
 
     void clear_gradient() {
-        for (int kind = 0; kind < 2; ++kind) {
+        for (const Kind kind : {Kind::corners, inner_kind_}) {
             gradients_[kind].assign(points_[kind].size(),
                                     {Row::Zero(), Row::Zero(), Row::Zero(), Row::Zero()});
         }
@@ -193,8 +193,8 @@ class ShapeEnergy::Element {
     /// Derivatives by the element's control points, 3 x n_functions.
     void write_gradient(Eigen::Ref<MatrixX> by_points) {
         std::fill(rows_.begin(), rows_.end(), Row::Zero());
-        backward(0);
-        backward(1);
+        backward(Kind::corners);
+        backward(inner_kind_);
         for (int f = 0; f < n_functions(); ++f) {
             by_points.col(f) = patch_->weights[functions_[f]] * rows_[f].head<3>().matrix();
         }
@@ -330,8 +330,9 @@ class ShapeEnergy::Element {
     std::vector<Row> rows_;
     std::vector<Row> a_;
     std::vector<Row> b_;
-    std::array<std::vector<Point>, 2> points_;
-    std::array<std::vector<Point>, 2> gradients_;
+    Kind inner_kind_ = gauss;
+    std::array<std::vector<Point>, n_kinds> points_;
+    std::array<std::vector<Point>, n_kinds> gradients_;
 };
 
 ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& dofs,
@@ -355,11 +356,11 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
             data.n_elements[k] = knots.n_elements();
             data.breakpoints[k] = knots.breakpoints();
             n_elements *= knots.n_elements();
-            const std::array<std::vector<double>, 2> samples{
-                std::vector<double>{0.0, 1.0},
-                iga::gauss_rule(knots.degree() + n_more_points).points};
-            for (int kind = 0; kind < 2; ++kind) {
-                iga::BasisTable table = tabulate(knots, data.breakpoints[k], samples[kind]);
+            const std::array<int, n_kinds> n_samples{2, knots.degree() + n_more_points,
+                                                     2 * knots.degree() + 1};
+            for (int kind = 0; kind < n_kinds; ++kind) {
+                iga::BasisTable table =
+                    tabulate(knots, data.breakpoints[k], sample_places(kind, n_samples[kind]));
                 const std::size_t per_element = table.derivatives.size() / knots.n_elements();
                 for (std::size_t i = 0; i < table.derivatives.size(); ++i) {
                     const std::size_t e = i / per_element;
@@ -369,6 +370,10 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
                 data.tables[kind][k] = std::move(table);
             }
         }
+        for (int kind = 0; kind < n_kinds; ++kind) {
+            data.corners_around[kind] = corners_around(data.tables[kind], kind != gauss);
+        }
+        data.first_number = n_elements_;
         for (int e = 0; e < n_elements; e += elements_per_chunk) {
             chunks_.push_back(
                 {p, e, std::min(e + elements_per_chunk, n_elements), n_elements_ + e});
@@ -380,16 +385,18 @@ ShapeEnergy::ShapeEnergy(const iga::MultiPatch<3>& geometry, const iga::DofMap& 
         patches_.push_back(std::move(data));
     }
     singular_corners_.assign(n_elements_, 0);
+    is_dense_.assign(n_elements_, false);
     element_dofs_.resize(n_elements_);
     for_each(static_cast<int>(chunks_.size()), [&](int i) {
         const Chunk& chunk = chunks_[i];
         Element element;
         for (int e = chunk.first_element; e < chunk.last_element; ++e) {
             const int number = chunk.first_number + e - chunk.first_element;
-            element.load(patches_[chunk.patch], e, start);
+            element.load(patches_[chunk.patch], e, start, false);
             element_dofs_[number] = element.dofs();
             for (int q = 0; q < 8; ++q) {
-                if (std::abs(inverse_mean_ratio(element.jacobian(0, q), 1)) < singular_ratio) {
+                if (std::abs(inverse_mean_ratio(element.jacobian(corners, q), 1)) <
+                    singular_ratio) {
                     singular_corners_[number] |= 1U << q;
                 }
             }
@@ -419,25 +426,18 @@ double ShapeEnergy::evaluate(const MatrixX& points, const ShapeMeasure& measure,
         for (int e = chunk.first_element; e < chunk.last_element; ++e) {
             const int number = chunk.first_number + e - chunk.first_element;
             const unsigned singular = singular_corners_[number];
-            const double delta = measure.regularization * reference_volumes_[number];
-            element.load(patches_[chunk.patch], e, points);
+            element.load(patches_[chunk.patch], e, points, is_dense_[number]);
             element.clear_gradient();
-            int n_samples = element.n_samples(1);
-            for (int q = 0; q < 8; ++q) {
-                n_samples += (singular >> q & 1U) != 0 ? 0 : 1;
-            }
+            const int n_samples = element.n_samples(singular);
             double sum = 0.0;
-            for (int kind = 0; kind < 2 && sum < infinity; ++kind) {
-                for (int q = 0; q < element.n_samples(kind) && sum < infinity; ++q) {
-                    if (kind == 0 && (singular >> q & 1U) != 0) {
-                        continue;
-                    }
-                    const SampleEnergy sample = sample_energy(
-                        element.jacobian(kind, q), element.orientation(), measure.power, delta);
-                    sum += sample.value / n_samples;
-                    element.add_by_jacobian(kind, q, sample.by_J / n_samples);
-                }
-            }
+            element.for_each_sample(singular, [&](int kind, int q) {
+                const SampleEnergy sample =
+                    sample_energy(element.jacobian(kind, q), element.orientation(), measure,
+                                  reference_volumes_[number]);
+                sum += sample.value / n_samples;
+                element.add_by_jacobian(kind, q, sample.by_J / n_samples);
+                return sum < infinity;
+            });
             if (measure.shape_ratio_weight > 0.0 && singular == 0 && sum < infinity) {
                 const SmoothShapeRatio ratio =
                     smooth_shape_ratio(element.corners(), element.orientation());
@@ -481,26 +481,21 @@ ShapeSummary ShapeEnergy::summary(const MatrixX& points) const {
         worst[i].min_inverse_mean_ratio = infinity;
         Element element;
         for (int e = chunk.first_element; e < chunk.last_element; ++e) {
-            const unsigned singular =
-                singular_corners_[chunk.first_number + e - chunk.first_element];
-            element.load(patches_[chunk.patch], e, points);
-            for (int kind = 0; kind < 2; ++kind) {
-                for (int q = 0; q < element.n_samples(kind); ++q) {
-                    if (kind == 0 && (singular >> q & 1U) != 0) {
-                        continue;
-                    }
-                    const Matrix<3> J = element.jacobian(kind, q);
-                    worst[i].min_scaled_jacobian =
-                        std::min(worst[i].min_scaled_jacobian,
-                                 element.orientation() * iga::scaled_jacobian<3>(J));
-                    const double ratio = inverse_mean_ratio(J, element.orientation());
-                    if (ratio < worst[i].min_inverse_mean_ratio) {
-                        worst[i].min_inverse_mean_ratio = ratio;
-                        worst[i].patch = chunk.patch;
-                        worst[i].xi = element.xi(kind, q);
-                    }
+            const int number = chunk.first_number + e - chunk.first_element;
+            element.load(patches_[chunk.patch], e, points, is_dense_[number]);
+            element.for_each_sample(singular_corners_[number], [&](int kind, int q) {
+                const Matrix<3> J = element.jacobian(kind, q);
+                worst[i].min_scaled_jacobian =
+                    std::min(worst[i].min_scaled_jacobian,
+                             element.orientation() * iga::scaled_jacobian<3>(J));
+                const double ratio = inverse_mean_ratio(J, element.orientation());
+                if (ratio < worst[i].min_inverse_mean_ratio) {
+                    worst[i].min_inverse_mean_ratio = ratio;
+                    worst[i].patch = chunk.patch;
+                    worst[i].xi = element.xi(kind, q);
                 }
-            }
+                return true;
+            });
             worst[i].max_shape_ratio =
                 std::max(worst[i].max_shape_ratio, iga::shape_ratio(element.corners()));
         }
@@ -524,12 +519,13 @@ std::vector<double> ShapeEnergy::volumes(const MatrixX& points) const {
         const Chunk& chunk = chunks_[i];
         Element element;
         for (int e = chunk.first_element; e < chunk.last_element; ++e) {
-            element.load(patches_[chunk.patch], e, points);
+            element.load(patches_[chunk.patch], e, points, false);
             double sum = 0.0;
-            for (int q = 0; q < element.n_samples(1); ++q) {
-                sum += element_size_cubed(element.jacobian(1, q));
+            int n = 0;
+            for (; n < element.n_samples_of(gauss); ++n) {
+                sum += element_size_cubed(element.jacobian(gauss, n));
             }
-            result[chunk.first_number + e - chunk.first_element] = sum / element.n_samples(1);
+            result[chunk.first_number + e - chunk.first_element] = sum / n;
         }
     });
     return result;
@@ -546,6 +542,16 @@ VectorX ShapeEnergy::sizes(const MatrixX& points) const {
         }
     }
     return sum.cwiseQuotient(count);
+}
+
+bool ShapeEnergy::sample_densely(int patch, const std::vector<int>& elements) {
+    bool is_new = false;
+    for (const int e : elements) {
+        const int number = patches_[patch].first_number + e;
+        is_new = is_new || !is_dense_[number];
+        is_dense_[number] = true;
+    }
+    return is_new;
 }
 
 void ShapeEnergy::set_reference(const MatrixX& points) { reference_volumes_ = volumes(points); }

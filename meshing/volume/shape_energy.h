@@ -6,21 +6,9 @@
 #include "iga/spline/bspline_basis.h"
 #include "iga/topology/dof_map.h"
 #include "iga/topology/multipatch.h"
+#include "meshing/volume/mean_ratio.h"
 
 namespace couture::meshing {
-
-/// What a ShapeEnergy measures.
-struct ShapeMeasure {
-    /// Exponent of the mean ratio: the larger, the more the worst count.
-    int power = 2;
-    /// Part of the shape ratio of the elements' corners beside the mean ratio, and its exponent.
-    double shape_ratio_weight = 0.0;
-    int shape_ratio_power = 2;
-    /// 0: infinite for folded elements. Else det J is replaced by
-    /// (det J + sqrt(det J^2 + (2 regularization size^3)^2)) / 2, finite for all, with the
-    /// element's size (see ShapeEnergy::set_reference).
-    double regularization = 0.0;
-};
 
 struct EnergyGradient {
     double value = 0.0;
@@ -42,15 +30,18 @@ struct ShapeSummary {
 
 /// How far the elements of a multipatch volume are from cubes, as a function of its control points.
 ///
-/// E = mean over elements of (mean over samples of mu^m + weight (S / sqrt(3))^n), mu =
+/// E = mean over elements of (mean over samples of mu^m + weight (S / sqrt(3))^n + the part of
+/// sizes), mu =
 /// |J|^3 / (3 sqrt(3) det J) the inverse mean ratio of the map from the unit cube to the element,
-/// sampled at the element's corners and (degree + 1)^3 Gauss points (or as many as asked for), S
-/// the smooth shape ratio of its corners. 1 + weight for cubes, independent of size. Corner samples
-/// at which `geometry` is singular (collapsed sides, corners with a straight angle) are left out,
-/// and such elements have no S. Sums run in a fixed order: results do not depend on the number of
-/// threads.
+/// sampled at the element's corners and (degree + 1)^3 Gauss points (or as many as asked for), or
+/// densely, also on its faces and edges, where asked for, S the smooth shape ratio of its corners.
+/// 1 + weight for cubes, independent of size. Corners at
+/// which `geometry` is singular (collapsed sides, corners with a straight angle) are left out, as
+/// are samples on faces and edges between such corners only, and such elements have no S. Sums run
+/// in a fixed order: results do not depend on the number of threads.
 ///
-/// Source: [Knupp01] for the mean ratio; [Escobar03] for its regularisation.
+/// Source: [Knupp01] for the mean ratio; [Escobar03] for its regularisation; [Garanzha21] for
+/// the part of sizes.
 class ShapeEnergy {
   public:
     /// @param geometry  spaces and weights; its points choose the corners left out
@@ -73,17 +64,30 @@ class ShapeEnergy {
     [[nodiscard]] VectorX sizes(const MatrixX& points) const;
     /// Takes the sizes of elements for regularised measures from `points`.
     void set_reference(const MatrixX& points);
+    /// Samples elements of a patch at a grid of (2 degree + 1)^3 points, its border included.
+    ///
+    /// @param elements  of the patch, first direction fastest
+    /// @return whether one of them was not sampled so before
+    bool sample_densely(int patch, const std::vector<int>& elements);
 
   private:
-    /// Functions at the samples of one kind (corners or Gauss points), by direction; derivatives
-    /// by the coordinates of the unit cube.
+    /// The kinds of samples: each element has a grid of its corners, and Gauss points or a dense
+    /// grid.
+    enum Kind { corners, gauss, dense, n_kinds };
+    /// Functions at the samples of one kind, by direction; derivatives by the coordinates of the
+    /// unit cube.
     using Tables = std::array<iga::BasisTable, 3>;
     struct PatchTables {
         int orientation = 1;
         std::array<int, 3> n_basis{};
         std::array<int, 3> n_elements{};
         std::array<std::vector<double>, 3> breakpoints;
-        std::array<Tables, 2> tables;
+        std::array<Tables, n_kinds> tables;
+        /// For each kind and sample the corners of the smallest face, edge or vertex of the unit
+        /// cube that holds it: bit i is corner i.
+        std::array<std::vector<unsigned char>, n_kinds> corners_around;
+        /// Of the patch's first element, among all.
+        int first_number = 0;
         /// Of each function: global number and weight.
         std::vector<int> dofs;
         VectorX weights;
@@ -109,6 +113,7 @@ class ShapeEnergy {
     int n_elements_ = 0;
     /// Corner samples left out, by element: bit i is corner i.
     std::vector<unsigned char> singular_corners_;
+    std::vector<bool> is_dense_;
     /// Control points of each element.
     std::vector<std::vector<int>> element_dofs_;
     std::vector<double> reference_volumes_;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "io/atomic_file.h"
 #include "tests/data_folder.h"
@@ -22,8 +23,8 @@ namespace {
 // give 16 at degree 2.
 constexpr double least_ratio = 1.5;
 
-// Elements of the volumes, per cuboid and direction, and of the spaces on them.
-constexpr std::array<int, 3> levels{2, 4, 8};
+// Spaces have the volume's elements, halved as often.
+constexpr int n_levels = 3;
 
 double run_json(const std::string& arguments, const fs::path& folder,
                 const nlohmann::json::json_pointer& number) {
@@ -35,7 +36,10 @@ double run_json(const std::string& arguments, const fs::path& folder,
 }
 
 // The ratio of the differences between energies at three levels.
-double energy_ratio(const fs::path& volume, const std::string& held, const fs::path& folder) {
+//
+// @param n_elements  of the volume, per cuboid and direction
+double energy_ratio(const fs::path& volume, const std::string& held, int n_elements,
+                    const fs::path& folder) {
     const fs::path deck = folder / "energy.toml";
     io::write_text(deck, fmt::format("[geometry]\nfile = \"{}\"\n"
                                      "[material.steel]\n"
@@ -44,11 +48,11 @@ double energy_ratio(const fs::path& volume, const std::string& held, const fs::p
                                      "[[body_force]]\nvalue = [1e-3, 2e-3, 3e-3]\n"
                                      "[output]\nvtu = false\n",
                                      volume.string(), held));
-    std::array<double, levels.size()> energies{};
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-        energies[k] =
-            run_json(fmt::format("solve energy.toml --set discretization.elements={}", levels[k]),
-                     folder, "/cases/0/energy"_json_pointer);
+    std::array<double, n_levels> energies{};
+    for (int k = 0; k < n_levels; ++k) {
+        energies[k] = run_json(
+            fmt::format("solve energy.toml --set discretization.elements={}", n_elements << k),
+            folder, "/cases/0/energy"_json_pointer);
     }
     CAPTURE(energies);
     // Each space contains the one before it, and nothing moves at the supports.
@@ -57,46 +61,57 @@ double energy_ratio(const fs::path& volume, const std::string& held, const fs::p
     return (energies[1] - energies[0]) / (energies[2] - energies[1]);
 }
 
-// Meshes with two elements per cuboid and direction, then solves.
-//
-// @param input  arguments of couture mesh beside --out
-void check_energies(const std::string& input, const std::string& volume, const std::string& held,
+// Meshes with as many elements per cuboid and direction, whatever their size, then solves.
+void check_energies(const std::string& deck, const std::string& held, int n_elements,
                     const fs::path& folder) {
-    const ProgramResult mesh = run_couture("mesh " + input + " --out mesh", folder);
+    const ProgramResult mesh = run_couture(
+        fmt::format("mesh {}.toml --set meshing.element_size=1000 --set meshing.min_elements={} "
+                    "--out mesh",
+                    deck, n_elements),
+        folder);
     INFO(mesh.errors);
     REQUIRE(mesh.exit_code == 0);
-    CHECK(energy_ratio("mesh/" + volume + "_volume.xml", held, folder) >= least_ratio);
+    CHECK(energy_ratio("mesh/" + deck + "_volume.xml", held, n_elements, folder) >= least_ratio);
 }
 
 }  // namespace
 
 TEST_CASE("mesh, solve: differences of energies shrink with each refinement", "[drivers]") {
-    const std::string to_volume = " --stage volume";
-    const std::string with_caps = " --open caps --stage volume";
-    // The volume's name, what is meshed, the side that is held.
-    const auto [name, input, held] = GENERATE_COPY(table<std::string, std::string, std::string>({
-        {"pant", "pant" + with_caps, "cap_1"},
-        {"half_seal", "half_seal" + with_caps, "cap"},
-        {"seal", "seal" + with_caps, "cap_x_low"},
-        {"double_t", "double_t" + with_caps, "cap_1"},
-        {"cylinder", "cylinder" + with_caps, "z_low"},
-        {"cube", "cube" + to_volume, "x_low"},
-        {"plate", "plate" + to_volume, "x_low"},
+    // The part, whether its caps are taken off, the side that is held.
+    const auto [part, has_caps, held] = GENERATE(table<std::string, bool, std::string>({
+        {"pant", true, "cap_1"},
+        {"half_seal", true, "cap"},
+        {"seal", true, "cap_x_low"},
+        {"double_t", true, "cap_1"},
+        {"cylinder", true, "z_low"},
+        {"cube", false, "x_low"},
+        {"plate", false, "x_low"},
     }));
-    CAPTURE(name);
+    CAPTURE(part);
     const TemporaryFolder folder;
-    check_energies(input + " --element-size 1000", name, held, folder.path());
+    io::write_text(folder.path() / (part + ".toml"),
+                   fmt::format("[geometry]\npart = \"{}\"\n[meshing]\nstage = \"volume\"\n{}", part,
+                               has_caps ? "open = \"caps\"\n" : ""));
+    check_energies(part, held, 2, folder.path());
 }
 
-TEST_CASE("mesh, solve: differences of energies shrink on a vessel", "[drivers]") {
+TEST_CASE("mesh, solve: differences of energies shrink on a casting", "[drivers]") {
+    const TemporaryFolder folder;
+    const std::string deck = "mesh_casting_volume";
+    fs::copy_file(fs::path(COUTURE_SOURCE_DIR) / "drivers/decks" / (deck + ".toml"),
+                  folder.path() / (deck + ".toml"));
+    check_energies(deck, "bottom", 1, folder.path());
+}
+
+TEST_CASE("mesh, solve: differences of energies shrink on vessels", "[drivers]") {
     const auto data = test::data_folder();
     if (!data) return;
+    const auto [deck, surface, held] = GENERATE(table<std::string, std::string, std::string>(
+        {{"mesh_artery", "vampy_artery.stl", "cap_1"}, {"mesh_vein", "vampy_vein.stl", "cap_1"}}));
+    CAPTURE(deck);
     const TemporaryFolder folder;
-    const std::string deck = "mesh_artery.toml";
-    fs::copy_file(fs::path(COUTURE_SOURCE_DIR) / "tests/drivers/decks" / deck,
-                  folder.path() / deck);
-    fs::create_symlink(fs::absolute(*data / "surfaces/vampy_artery.stl"),
-                       folder.path() / "vampy_artery.stl");
-    check_energies(deck + " --set meshing.element_size=1000", "mesh_artery", "cap_1",
-                   folder.path());
+    fs::copy_file(fs::path(COUTURE_SOURCE_DIR) / "tests/drivers/decks" / (deck + ".toml"),
+                  folder.path() / (deck + ".toml"));
+    fs::create_symlink(fs::absolute(*data / "surfaces" / surface), folder.path() / surface);
+    check_energies(deck, held, 2, folder.path());
 }

@@ -66,7 +66,7 @@ TEST_CASE("mesh family: files are matched by where they lie", "[drivers]") {
     REQUIRE(run_couture("convert cube a.off", folder.path()).exit_code == 0);
     REQUIRE(run_couture("convert cube --set length=120 --edge-length 15 b.off", folder.path())
                 .exit_code == 0);
-    io::write_text(folder.path() / "m.csv", "name,surface\nb,b.off\n");
+    io::write_text(folder.path() / "m.csv", "\xEF\xBB\xBFsurface\nb.off\n");
     io::write_text(folder.path() / "f.toml",
                    "[geometry]\nsurface = \"a.off\"\n[meshing]\nelement_size = 50\n[family]\n"
                    "parameters = \"m.csv\"\n");
@@ -136,6 +136,14 @@ TEST_CASE("mesh family: an interrupted run leaves whole files and is resumed", "
     CHECK(object["members"] == whole["members"]);
     CHECK(io::read_text(file("d_volume.xml")) ==
           io::read_text(folder.path() / "whole/d_volume.xml"));
+
+    // A member whose file was cut since is meshed again.
+    const std::string volume = io::read_text(file("b_volume.xml"));
+    io::write_text(file("b_volume.xml"), volume.substr(0, volume.size() / 2));
+    const auto mended = run_couture("mesh f.toml --out o --resume", folder.path());
+    CHECK(mended.exit_code == 0);
+    CHECK_THAT(mended.errors, Contains("b is meshed again") && Contains("c is done already"));
+    CHECK(io::read_text(file("b_volume.xml")) == volume);
 
     const auto other =
         run_couture("mesh f.toml --out o --resume --set meshing.element_size=30", folder.path());

@@ -1,15 +1,34 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "iga/topology/side_patch.h"
 #include "io/atomic_file.h"
 #include "io/spline_file.h"
 #include "meshing/parts/parts.h"
+#include "tests/data_folder.h"
 #include "tests/drivers/run_program.h"
 
 using namespace couture;
 using namespace couture::tests;
 using Catch::Matchers::Contains;
+
+namespace fs = std::filesystem;
+
+TEST_CASE("mesh: six surfaces of a duck become a volume", "[drivers]") {
+    // Two of its sides meet nearly flat: there a volume is positive, if at all, by a little.
+    const auto data = test::data_folder();
+    if (!data) return;
+    const TemporaryFolder folder;
+    const std::string file = fs::absolute(*data / "volumes/gismo_duck_BRep.xml").string();
+    const auto result =
+        run_couture("mesh '" + file + "' --stage volume --out o --json", folder.path());
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    const auto volume = nlohmann::json::parse(result.output)["volume"];
+    CHECK(volume["certificate"] == "valid");
+    CHECK(volume["patches"] == 1);
+}
 
 TEST_CASE("mesh: surfaces of a pipe become volumes and hexahedra", "[drivers]") {
     const TemporaryFolder folder;

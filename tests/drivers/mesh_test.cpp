@@ -91,7 +91,7 @@ TEST_CASE("mesh: a deck says all of it", "[drivers]") {
     CHECK(nlohmann::json::parse(stage.output)["files"].size() == 2);
     const auto both = run_couture("mesh plate.toml --edge-length 8", folder.path());
     CHECK(both.exit_code == 2);
-    CHECK_THAT(both.errors, Contains("with a deck only"));
+    CHECK_THAT(both.errors, Contains("a deck says itself how it is meshed"));
     const auto changed = run_couture("mesh plate.toml --set meshing.edge_length=-8", folder.path());
     CHECK(changed.exit_code == 2);
     CHECK_THAT(changed.errors, Contains("edge_length"));
@@ -184,4 +184,107 @@ TEST_CASE("mesh: mistakes are explained", "[drivers]") {
     const auto turned = run_couture("mesh inside_out.off", folder.path());
     CHECK(turned.exit_code == 0);
     CHECK_THAT(turned.errors, Contains("inside out"));
+}
+
+TEST_CASE("mesh: what the volume lacks is said", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    io::write_text(folder.path() / "one.toml", R"([nodes]
+a = "x_low-y_low-z_low"
+b = "x_high-y_low-z_low"
+c = "x_low-y_high-z_low"
+d = "x_high-y_high-z_low"
+e = "x_low-y_low-z_high"
+f = "x_high-y_low-z_high"
+g = "x_low-y_high-z_high"
+h = "x_high-y_high-z_high"
+[[cuboid]]
+nodes = ["a", "b", "c", "d", "e", "f", "g", "h"]
+)");
+    const auto fine = tests::run_couture(
+        "mesh cube --layout one.toml --stage volume --element-size 50", folder.path());
+    CHECK(fine.exit_code == 0);
+    CHECK_THAT(fine.errors, !Contains("no side of a cuboid") && !Contains("away from the surface"));
+}
+
+TEST_CASE("mesh: faces that a layout leaves out and a distance far too large are said",
+          "[drivers]") {
+    const tests::TemporaryFolder folder;
+    // A tall and a low step: one cuboid on the outer corners, none at the step.
+    io::write_text(folder.path() / "step.off", R"(OFF
+12 20 0
+0 0 0
+60 0 0
+60 30 0
+30 30 0
+30 60 0
+0 60 0
+0 0 20
+60 0 20
+60 30 20
+30 30 20
+30 60 20
+0 60 20
+3 0 3 1
+3 1 3 2
+3 0 5 3
+3 3 5 4
+3 6 7 9
+3 7 8 9
+3 6 9 11
+3 9 10 11
+3 0 1 7
+3 0 7 6
+3 1 2 8
+3 1 8 7
+3 2 3 9
+3 2 9 8
+3 3 4 10
+3 3 10 9
+3 4 5 11
+3 4 11 10
+3 5 0 6
+3 5 6 11
+)");
+    io::write_text(folder.path() / "one.toml", R"([nodes]
+a = [0, 0, 0]
+b = [60, 0, 0]
+c = [0, 60, 0]
+d = [60, 30, 0]
+e = [0, 0, 20]
+f = [60, 0, 20]
+g = [0, 60, 20]
+h = [60, 30, 20]
+[[cuboid]]
+nodes = ["a", "b", "c", "d", "e", "f", "g", "h"]
+)");
+    const auto result = tests::run_couture(
+        "mesh step.off --layout one.toml --stage volume --element-size 8", folder.path());
+    CAPTURE(result.errors);
+    CHECK_THAT(result.errors, Contains("no side of a cuboid lies on the faces"));
+    CHECK_THAT(result.errors, Contains("away from the surface: smaller elements"));
+}
+
+TEST_CASE("mesh: a run that fails leaves the stages before", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto result = tests::run_couture("mesh double_t --stage volume --out o", folder.path());
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.errors,
+               Contains("no template fits") && Contains("it came as far as stage pants"));
+    CHECK(std::filesystem::exists(folder.path() / "o/double_t_pants.vtp"));
+}
+
+TEST_CASE("mesh: numbers that no run could end with are refused at once", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    const auto refused = [&](const std::string& options, const std::string& why) {
+        const auto result = tests::run_couture("mesh cube " + options, folder.path());
+        CAPTURE(options, result.errors);
+        CHECK(result.exit_code == 2);
+        CHECK_THAT(result.errors, Contains(why));
+    };
+    refused("--stage volume --element-size 1e-9", "at most 2e+06 are");
+    refused("--element-size 0", "must be positive");
+    refused("--degree 9", "not in range 1 to 8");
+    refused("--stage hexes --points 2000", "not in range 2 to 1000");
+    io::write_text(folder.path() / "file", "");
+    refused("--out file", "is not a folder");
 }

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "iga/spline/refine.h"
+#include "iga/topology/jacobian_certificate.h"
 #include "io/atomic_file.h"
 #include "io/spline_file.h"
 #include "tests/data_folder.h"
@@ -144,6 +146,40 @@ TEST_CASE("mesh: vessels and chambers of the heart become valid volumes", "[driv
                   folder.path() / deck);
     fs::create_symlink(fs::absolute(*data / "surfaces" / surface), folder.path() / surface);
     check_volume(folder.path() / deck, folder.path(), most_distance_of_organs);
+}
+
+TEST_CASE("mesh: degree 3 is certified, as are its halved elements", "[drivers]") {
+    const auto data = test::data_folder();
+    const std::string name = GENERATE("double_torus", "plate", "vein");
+    CAPTURE(name);
+    const bool is_vein = name == "vein";
+    if (is_vein && !data) return;
+    const TemporaryFolder folder;
+    if (is_vein) {
+        fs::create_symlink(fs::absolute(*data / "surfaces/vampy_vein.stl"),
+                           folder.path() / "vampy_vein.stl");
+    }
+    const std::string deck = "mesh_" + name + ".toml";
+    fs::copy_file(
+        fs::path(COUTURE_SOURCE_DIR) / (is_vein ? "tests/drivers/decks" : "drivers/decks") / deck,
+        folder.path() / deck);
+    const ProgramResult result =
+        run_couture("mesh --json --set meshing.degree=3 --out o " + deck, folder.path());
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    const auto volume = nlohmann::json::parse(result.output).at("volume");
+    CHECK(volume.at("certificate") == "valid");
+    CHECK(volume.at("min_scaled_jacobian") >= least_scaled_jacobian);
+    CHECK(volume.at("mean_scaled_jacobian") >= least_mean);
+    const auto made = std::get<iga::MultiPatch<3>>(
+        io::read_splines(folder.path() / "o" / ("mesh_" + name + "_volume.xml")).multipatch);
+    for (const iga::Volume& patch : made.patches) {
+        iga::TensorSpace<3> finer = patch.space();
+        for (iga::KnotVector& knots : finer.knots) {
+            knots = iga::refine(knots, 3, 2 * knots.n_elements()).knots;
+        }
+        CHECK(iga::certify<3>(iga::refine_to<3>(patch, finer)).validity == iga::Validity::valid);
+    }
 }
 
 TEST_CASE("mesh: pictures of all stages and of nodes that move", "[drivers]") {

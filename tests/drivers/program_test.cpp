@@ -201,6 +201,16 @@ TEST_CASE("couture bench: every line has a time and a share of the machine", "[d
         CHECK(row["loops_cpu_seconds"] > 0.0);
         CHECK(row["pants_cpu_seconds"] > 0.0);
     }
+    CHECK(numbers["meshing"].size() == 3);
+    for (const Json& row : numbers["meshing"]) {
+        CHECK(row["patches"] == 4);
+        CHECK(row["min_scaled_jacobian"] > 0.5);
+        CHECK(row["cpu_seconds"] > 0.0);
+    }
+    REQUIRE(numbers["evaluation"].size() == 1);
+    for (const char* phase : {"fields", "samples", "batch", "errors", "gradient"}) {
+        CHECK(numbers["evaluation"][0][std::string(phase) + "_cpu_seconds"] > 0.0);
+    }
 }
 
 TEST_CASE("couture solve: two runs are equal, two decks are not", "[drivers]") {

@@ -49,6 +49,34 @@ const std::string impossible =
     "--set displacement.0.x=-1.5 --set stepping.smallest_step=5e-3 "
     "--set output.probe=[]";
 
+/// A half seal of rubber that is pushed flat in ten steps and meshed again half way.
+///
+/// @param geometry  what stands in [geometry]
+/// @param cuts      the set or sets that are held
+/// @param more      further lines of [remeshing], then further sections
+std::string half_seal_deck(const std::string& geometry, const std::string& cuts,
+                           const std::string& more) {
+    return "[geometry]\n" + geometry + R"(
+[material.rubber]
+model = "neo_hookean"
+shear_modulus = 3
+bulk_modulus = 20
+[[fixed]]
+on = )" + cuts +
+           R"(
+[[displacement]]
+on = "cap"
+value = [-20, 0, 0]
+[stepping]
+first_step = 0.1
+largest_step = 0.1
+[remeshing]
+at = [0.5]
+)" + more;
+}
+
+const std::string by_surface = "mesher = \"surface\"\n";
+
 void write_deck(const TemporaryFolder& folder, const std::string& text = block) {
     io::write_text(folder.path() / "block.toml", text);
 }
@@ -277,25 +305,9 @@ TEST_CASE("couture solve: --resume is for hyperelastic decks", "[drivers]") {
 
 TEST_CASE("couture solve: probes at a time, also after a resume", "[drivers]") {
     const TemporaryFolder folder;
-    write_deck(folder, R"([geometry]
-part = "half_seal"
-[discretization]
+    write_deck(folder, half_seal_deck("part = \"half_seal\"", "\"cuts\"", R"([discretization]
 degree = 1
 geometry = "interpolated"
-[material.rubber]
-model = "neo_hookean"
-shear_modulus = 3
-bulk_modulus = 20
-[[fixed]]
-on = "cuts"
-[[displacement]]
-on = "cap"
-value = [-20, 0, 0]
-[stepping]
-first_step = 0.1
-largest_step = 0.1
-[remeshing]
-at = [0.5]
 [output]
 every = 4
 [[output.probe]]
@@ -303,7 +315,7 @@ quantity = "displacement_x"
 at = [65, 1, 2]
 expect = -20
 tolerance = 1e-9
-)");
+)"));
     const std::string run = "solve block.toml";
     const auto result = run_couture(run + " --out a", folder.path());
     CAPTURE(result.output, result.errors);
@@ -346,28 +358,8 @@ TEST_CASE("couture solve: from triangles to a run that is meshed again from its 
         "mesh half_seal --open caps --stage volume --degree 1 --element-size 8", folder.path());
     CAPTURE(meshed.output, meshed.errors);
     REQUIRE(meshed.exit_code == 0);
-    const auto deck = [](const std::string& geometry, const std::string& cuts) {
-        return "[geometry]\n" + geometry + R"(
-[material.rubber]
-model = "neo_hookean"
-shear_modulus = 3
-bulk_modulus = 20
-[[fixed]]
-on = )" + cuts +
-               R"(
-[[displacement]]
-on = "cap"
-value = [-20, 0, 0]
-[stepping]
-first_step = 0.1
-largest_step = 0.1
-[remeshing]
-at = [0.5]
-mesher = "surface"
-)";
-    };
-    write_deck(folder, deck("file = \"out/half_seal/half_seal_volume.xml\"",
-                            "[\"cut_low\", \"cut_high\"]"));
+    write_deck(folder, half_seal_deck("file = \"out/half_seal/half_seal_volume.xml\"",
+                                      "[\"cut_low\", \"cut_high\"]", by_surface));
     const auto result = run_couture("solve block.toml --out a", folder.path());
     CAPTURE(result.output, result.errors);
     REQUIRE(result.exit_code == 0);
@@ -383,7 +375,7 @@ mesher = "surface"
     CHECK(report["reactions_after"].size() == 3);
     CHECK(report["reactions_before"].size() == 3);
 
-    write_deck(folder, deck("part = \"half_seal\"", "\"cuts\""));
+    write_deck(folder, half_seal_deck("part = \"half_seal\"", "\"cuts\"", by_surface));
     const auto exact = run_couture("solve block.toml --out b", folder.path());
     CHECK(exact.exit_code == 2);
     CHECK_THAT(exact.errors, Contains("mesher = \"surface\"") && Contains("has weights") &&

@@ -177,12 +177,14 @@ TEST_CASE("deck: what is missing", "[drivers]") {
     CHECK(error_of("") ==
           "bracket.toml: the deck is empty; it needs at least [geometry] and a material");
     CHECK(error_of(replaced("[geometry]\npart = \"box\"\n", "")) ==
-          "bracket.toml: the deck needs 'geometry' (the section [geometry] with 'file' or 'part')");
-    CHECK(error_of(replaced("part = \"box\"", "")) ==
-          "bracket.toml:2: [geometry] needs either 'file' (a spline file) or 'part' (a built-in "
-          "part)\n"
-          "    2 | [geometry]\n"
-          "      | ^~~~~~~~~~");
+          "bracket.toml: the deck needs 'geometry' (the section [geometry] with 'file', 'part' or "
+          "'mesh')");
+    CHECK(
+        error_of(replaced("part = \"box\"", "")) ==
+        "bracket.toml:2: [geometry] needs one of 'file' (a spline file), 'part' (a built-in part) "
+        "and 'mesh' (a deck for `couture mesh`)\n"
+        "    2 | [geometry]\n"
+        "      | ^~~~~~~~~~");
     CHECK(error_of(replaced("part = \"box\"", "file = \"none.xml\"")) ==
           "bracket.toml:3: there is no file none.xml (paths are relative to the deck)\n"
           "    3 | file = \"none.xml\"\n"

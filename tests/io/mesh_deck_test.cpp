@@ -154,3 +154,13 @@ TEST_CASE("mesh deck: mistakes name the line and the rule", "[io]") {
     CHECK(io::is_mesh_deck(folder / "surface.toml"));
     CHECK_FALSE(io::is_mesh_deck(folder / "solve.toml"));
 }
+
+TEST_CASE("mesh deck: a layout of one's own and a family are refused together", "[io]") {
+    const io::TemporaryFolder folder;
+    io::write_text(folder / "l.toml", "");
+    const std::string text =
+        "[geometry]\npart = \"cube\"\n[meshing]\nlayout = \"l.toml\"\n[family]\ndesign = "
+        "\"star\"\n";
+    CHECK_THROWS_WITH(static_cast<void>(io::parse_mesh_deck(text, folder / "f.toml")),
+                      Contains("a 'layout' of one's own in [meshing] has neither"));
+}

@@ -25,7 +25,7 @@ io::NamedLayout parse(const std::string& text) {
 TEST_CASE("named layout: nodes at points and corners, lengths in the deck's units", "[io]") {
     const io::NamedLayout layout = parse("tolerance = \"5 mm\"\n" + nodes + cuboid);
     CHECK(layout.tolerance == Approx(0.005));
-    CHECK(layout.names.back() == "h");
+    CHECK(layout.placed.layout.node_names.back() == "h");
     CHECK(layout.placed.positions.at(7) == Vector3(2, 1, 1));
     CHECK(layout.placed.layout.cuboids.at(0) == std::array{0, 1, 2, 3, 4, 5, 6, 7});
     // A mirrored one is turned.

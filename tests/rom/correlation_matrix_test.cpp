@@ -45,7 +45,7 @@ TEST_CASE("CorrelationMatrix: agrees with the dense matrix", "[rom]") {
                  std::vector<MatrixX>{correlation_of(4, 2, 1), correlation_of(3, 1, 2),
                                       correlation_of(5, 2, 3)});
     const double nugget = GENERATE(0.0, 0.05);
-    const auto K = CorrelationMatrix::factored(factors, nugget);
+    const auto K = CorrelationMatrix::factored(factors, nugget, true);
     REQUIRE(K);
     MatrixX dense = product(factors);
     const Eigen::Index n = dense.rows();
@@ -58,6 +58,9 @@ TEST_CASE("CorrelationMatrix: agrees with the dense matrix", "[rom]") {
     CHECK((dense * X - B).norm() < 1e-13 * dense.norm() * X.norm());
     CHECK(K->log_determinant() == Approx(std::log(dense.determinant())).epsilon(1e-9));
     CHECK((K->inverse_diagonal() - inverse.diagonal()).norm() < 1e-11 * scale);
+    const auto without_traces = CorrelationMatrix::factored(factors, nugget);
+    REQUIRE(without_traces);
+    CHECK((without_traces->inverse_diagonal() - inverse.diagonal()).norm() < 1e-11 * scale);
 
     for (int g = 0; g < static_cast<int>(factors.size()); ++g) {
         std::vector<MatrixX> with_derivative = factors;

@@ -114,6 +114,14 @@ TEST_CASE("cuboid template: what is no template is refused with its name", "[lay
                           t.layout.sets["branch"] = {{3, 0}, {3, 1}};
                       })),
                       Catch::Contains("cap 'branch': 2 quads have 2 boundary loops"));
+    std::vector<GridCell> ring;
+    for (int k = 0; k < 9; ++k) {
+        if (k != 4) ring.push_back({k % 3, k / 3, 0});
+    }
+    CHECK_THROWS_WITH(make_polycube_template("ring", ring, {{"top", {{0, 5}}}}),
+                      "template 'ring': the cuboids have 1 tunnels and 0 cavities; they must be a "
+                      "ball, as a patch of a surface and its caps bound one: open a ring at a pair "
+                      "of caps");
     CHECK_THROWS_WITH(make_polycube_template("edge", {{0, 0, 0}, {1, 1, 0}}, {}),
                       Catch::Contains("template 'edge'"));
     CHECK_THROWS_WITH(make_polycube_template("twice", {{0, 0, 0}, {0, 0, 0}}, {}),

@@ -69,9 +69,10 @@ inline std::vector<GuideLoop> casting_loops() {
 }
 
 // A part, opened at its caps and cut into pants.
-// @param sharp  above 0: cuts run along sharp edges, below: across them
+// @param sharp    above 0: cuts run along sharp edges, below: across them
+// @param through  points of cuts, see PantsOptions::cycles_through
 inline Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops = {},
-                    double sharp = -0.75) {
+                    double sharp = -0.75, const std::vector<std::vector<Vector3>>& through = {}) {
     const PartSurface part = make_part_surface(name);
     SurfaceMesh closed = make_surface_mesh(part.soup);
     const Features features = detect_features(closed);
@@ -92,6 +93,7 @@ inline Job cut_part(const std::string& name, const std::vector<GuideLoop>& loops
     named.cycle.sharp = sharp;
     named.merge.sharp = sharp > 0.0 ? sharp : 0.0;
     named.loops = loops;
+    named.cycles_through = through;
     for (const BoundaryLoop& loop : boundary_loops(job.opened)) {
         named.boundary_names.push_back(caps[opened.cap_of_vertex[loop.vertices[0].idx()]].name);
     }

@@ -117,3 +117,37 @@ TEST_CASE("embed layout: regions with holes are cut open", "[layout]") {
     const LayoutBoundary boundary = layout_boundary(block(3));
     check_embedding(cube.mesh, embed_layout(cube.mesh, boundary.layout, cube.ties));
 }
+
+TEST_CASE("embed layout: where a map is too thin arcs are drawn as shortest paths", "[layout]") {
+    // A finger amid a side of the cube, twenty times as long as it is round: the harmonic map of
+    // the side shrinks it by exp(-2 pi) for each of these, far below what doubles tell apart.
+    Cube cube = tied_cube(2);
+    TriangleSoup soup = to_soup(cube.mesh);
+    const Vector3 top(50.0, 50.0, 100.0);
+    const auto centroid = [&](const std::array<int, 3>& t) -> Vector3 {
+        return (soup.points[t[0]] + soup.points[t[1]] + soup.points[t[2]]) / 3.0;
+    };
+    const auto base = std::ranges::min_element(
+        soup.triangles, {}, [&](const auto& t) { return (centroid(t) - top).norm(); });
+    std::array<int, 3> ring = *base;
+    const double side = (soup.points[ring[0]] - soup.points[ring[1]]).norm();
+    soup.triangles.erase(base);
+    constexpr int n_levels = 60;
+    for (int level = 0; level < n_levels; ++level) {
+        std::array<int, 3> next{};
+        for (int k = 0; k < 3; ++k) {
+            next[k] = static_cast<int>(soup.points.size());
+            soup.points.emplace_back(soup.points[ring[k]] + side * Vector3::UnitZ());
+        }
+        for (int k = 0; k < 3; ++k) {
+            const int other = (k + 1) % 3;
+            soup.triangles.push_back({ring[k], ring[other], next[other]});
+            soup.triangles.push_back({ring[k], next[other], next[k]});
+        }
+        ring = next;
+    }
+    soup.triangles.push_back(ring);
+    cube.mesh = make_surface_mesh(soup);
+    const LayoutBoundary boundary = layout_boundary(block(2));
+    check_embedding(cube.mesh, embed_layout(cube.mesh, boundary.layout, cube.ties));
+}

@@ -5,6 +5,7 @@
 #include "iga/core/error.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/parts/parts.h"
+#include "meshing/pipeline/rounded_edges.h"
 #include "meshing/pipeline/solid_mesh.h"
 
 using namespace couture;
@@ -56,6 +57,7 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
     REQUIRE(placed.layout.n_cuboids() == 10);
     CuboidDecomposition cuboids = place_layout(solid.mesh, solid.features, placed);
     CHECK(untied_length(cuboids) == 0.0);
+    CHECK(find_rounded_edges(cuboids).empty());
     CHECK(cuboids.volume.n_cuboids() == 10);
     const double diagonal = bounding_box_diagonal(solid.mesh);
     // Nodes on no sharp edge lie where embed_layout puts them.
@@ -65,6 +67,14 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
         if (!vertex.is_valid()) continue;
         INFO("node " << n);
         CHECK((cuboids.mesh.point(vertex) - placed.positions[n]).norm() < nearby * diagonal);
+    }
+    const QuadLayout& layout = cuboids.surface.layout;
+    REQUIRE(static_cast<int>(cuboids.arc_lengths.size()) == layout.n_arcs());
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        if (cuboids.surface.is_feature_arc[a]) continue;
+        const auto [from, to] = layout.arcs()[a];
+        CHECK(cuboids.arc_lengths[a] ==
+              Approx((placed.positions[from] - placed.positions[to]).norm()));
     }
     for (const int degree : {2, 3}) {
         SolidMeshOptions options;

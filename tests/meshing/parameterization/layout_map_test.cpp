@@ -78,7 +78,11 @@ TEST_CASE("layout charts: transitions carry corners to corners", "[parameterizat
     CHECK_THROWS_AS(LayoutCharts(layout, std::vector<int>(3, 1)), InputError);
     std::vector<int> uneven(layout.n_arcs(), 1);
     uneven[0] = 2;
-    CHECK_THROWS_WITH(LayoutCharts(layout, uneven), Catch::Contains("face each other"));
+    // Arc 0 joins nodes 0 and 1, and faces those of nodes 2 and 3 and of nodes 4 and 5.
+    CHECK_THROWS_WITH(LayoutCharts(layout, uneven),
+                      Catch::Contains("2 on the arc of nodes 0 and 1") &&
+                          Catch::Contains("1 on the arc of nodes 2 and 3") &&
+                          Catch::Contains("arcs that face each other must have the same"));
 }
 
 TEST_CASE("sheet sizes: lengths over the target, rounded", "[parameterization]") {
@@ -175,6 +179,7 @@ TEST_CASE("layout map: no step flips a triangle or raises the energy", "[paramet
     SECTION("sphere") { check(make_sphere_layout(10, {0.4, 0.3, 0.5})); }
     SECTION("can with turned lid") { check(make_can_layout(10, 0.6)); }
     SECTION("torus, three uneven sections") { check(make_torus_layout(8, {0, 12, 32}, {0, 2, 4})); }
+    SECTION("torus, turned within a vertex") { check(make_torus_layout(8, {0, 2, 32}, {0, 3, 6})); }
 }
 
 TEST_CASE("layout map: points of feature arcs lie on their edges", "[parameterization]") {

@@ -52,7 +52,12 @@ void flood_quads(const SurfaceMesh& mesh, EmbeddedLayout& embedding) {
     std::vector<bool> is_arc(mesh.n_edges(), false);
     for (const auto& path : embedding.arcs) {
         for (std::size_t i = 1; i < path.size(); ++i) {
-            is_arc[mesh.edge_handle(mesh.find_halfedge(path[i - 1], path[i])).idx()] = true;
+            const HalfedgeHandle h = mesh.find_halfedge(path[i - 1], path[i]);
+            if (!h.is_valid()) {
+                throw TopologyError("lay_out: no edge joins the vertices {} and {} of an arc",
+                                    path[i - 1].idx(), path[i].idx());
+            }
+            is_arc[mesh.edge_handle(h).idx()] = true;
         }
     }
     embedding.quad_of_face.assign(mesh.n_faces(), -1);
@@ -192,17 +197,25 @@ LaidOutSurface make_torus_layout(int m, const std::vector<int>& sections,
     for (int s = 0; s < n_sections; ++s) {
         const int next = (s + 1) % n_sections;
         const int n_steps = (sections[next] - sections[s] + n_around) % n_around;
+        const int rise = turns[next] - turns[s];
+        if (n_steps < 2 || std::abs(rise) >= m) {
+            throw InputError(
+                "make_torus_layout: sections {} and {} are {} vertices apart and turned by {}; "
+                "they must be 2 or more apart and turned by less than {}",
+                s, next, n_steps, rise, m);
+        }
         for (int k = 0; k < 4; ++k) {
             std::vector<VertexHandle> along;
             int j = k * m + turns[s];
-            const int rise = turns[next] - turns[s];
             for (int i = 0; i <= n_steps; ++i) {
                 along.push_back(vertex(sections[s] + i, j));
+                // The way is turned between the sections, whose own arcs lie along them.
                 const int wanted =
                     k * m + turns[s] + std::min(i, n_steps - 1) * rise / (n_steps - 1);
-                if (wanted == j) continue;
-                j = wanted;
-                along.push_back(vertex(sections[s] + i, j));
+                while (j != wanted) {
+                    j += j < wanted ? 1 : -1;
+                    along.push_back(vertex(sections[s] + i, j));
+                }
             }
             add(4 * s + k, 4 * next + k, along);
             std::vector<VertexHandle> around;

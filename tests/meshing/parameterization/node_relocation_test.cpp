@@ -41,6 +41,31 @@ TEST_CASE("relocate nodes: a cube off the centre of a sphere becomes even", "[pa
     }
 }
 
+TEST_CASE("relocate nodes: cells are as long as wanted", "[parameterization]") {
+    const LaidOutSurface sphere = make_sphere_layout(14, {0.0, 0.0, 0.0});
+    const LayoutSamples start = samples_of(sphere, 6);
+    const QuadLayout& layout = sphere.embedding.layout;
+    // The arcs of a first quad are wanted longer than all others.
+    NodeRelocationOptions options;
+    options.cell_lengths.assign(layout.n_arcs(), 1.0);
+    const auto length = [&](const LayoutSamples& samples) {
+        double sum = 0.0;
+        for (const QuadLayout::Side& side : layout.sides(0)) {
+            const MatrixX& arc = samples.arcs[side.arc];
+            sum += (arc.col(0) - arc.rightCols(1)).norm();
+        }
+        return sum;
+    };
+    const RelocatedSamples even = relocate_nodes(sphere.mesh, sphere.embedding, start, options);
+    for (const QuadLayout::Side& side : layout.sides(0)) options.cell_lengths[side.arc] = 1.4;
+    const RelocatedSamples longer = relocate_nodes(sphere.mesh, sphere.embedding, start, options);
+    CHECK(length(even.samples) == Approx(8.0 / std::sqrt(3.0)).epsilon(0.03));
+    CHECK(length(longer.samples) > 1.1 * length(even.samples));
+    options.cell_lengths.pop_back();
+    CHECK_THROWS_WITH(relocate_nodes(sphere.mesh, sphere.embedding, start, options),
+                      Catch::Contains("11 lengths of cells for 12 arcs"));
+}
+
 TEST_CASE("relocate nodes: corners stay, features keep their points", "[parameterization]") {
     const LaidOutSurface can = make_can_layout(12, 0.7);
     const LayoutSamples start = samples_of(can, 5);

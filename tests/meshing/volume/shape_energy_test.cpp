@@ -104,6 +104,35 @@ TEST_CASE("ShapeEnergy: regularised, it is finite and smooth where elements fold
     CHECK(c.energy.summary(folded).min_inverse_mean_ratio < 0.0);
     CHECK(std::isinf(c.energy.value(folded, {.power = 1})));
     check_gradient(c, folded, {.power = 1, .regularization = 0.3});
+    check_gradient(c, folded, {.power = 1, .regularization = 0.3, .size_weight = 0.2});
+}
+
+TEST_CASE("ShapeEnergy: the part of sizes is that of the change of volume", "[volume]") {
+    // (s^3 + s^-3) / 2 beside 1, for cubes scaled by s.
+    const Case c(cube_of(2, 2));
+    for (const double s : {0.5, 1.0, 3.0}) {
+        const double d = s * s * s;
+        CHECK(c.energy.value(s * c.points, {.power = 2, .size_weight = 0.3}) ==
+              Approx(1.0 + 0.3 * 0.5 * (d + 1.0 / d)).epsilon(rounding));
+    }
+}
+
+TEST_CASE("ShapeEnergy: dense samples see folds on an edge, between the others", "[volume]") {
+    // One element of degree 3; the control points next to the edge x = y = 0 lie so that det J is
+    // z-dependent there: 1 at the ends, negative in between, positive at all Gauss points.
+    Case c(cube_of(3, 1));
+    MatrixX points = c.points;
+    for (int i = 0; i < points.cols(); ++i) {
+        const Vector3 x = points.col(i);
+        const bool is_next = std::abs(x[0] - 1.0 / 3.0) < 1e-9 && std::abs(x[1]) < 1e-9;
+        if (is_next && x[2] > 0.1 && x[2] < 0.9) points(0, i) = -0.2;
+    }
+    CHECK(c.energy.summary(points).min_scaled_jacobian > 0.0);
+    CHECK(c.energy.sample_densely(0, {0}));
+    CHECK_FALSE(c.energy.sample_densely(0, {0}));
+    CHECK(c.energy.summary(points).min_scaled_jacobian < 0.0);
+    check_gradient(c, c.points + noise(c.features.dofs().n_dofs, 0.01),
+                   {.power = 3, .shape_ratio_weight = 0.7});
 }
 
 TEST_CASE("ShapeEnergy: the summary names the worst place", "[volume]") {

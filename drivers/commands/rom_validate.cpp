@@ -1,0 +1,78 @@
+#include <fmt/ranges.h>
+
+#include "drivers/commands/commands.h"
+#include "drivers/rom_campaign.h"
+#include "drivers/rom_validation.h"
+#include "iga/core/error.h"
+#include "iga/core/text_hash.h"
+#include "iga/core/timer.h"
+#include "io/atomic_file.h"
+#include "io/picture.h"
+
+namespace couture::drivers {
+
+int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common) {
+    const Timer timer;
+    const RomTrainOptions& campaign = options.campaign;
+    RomSamples samples(campaign.deck, campaign.overrides);
+    const std::filesystem::path folder = rom_folder(campaign);
+    const std::string name = campaign.deck.stem().string();
+    const std::filesystem::path model_file = folder / (name + ".rom");
+    if (options.png) {
+        if (const auto missing = io::missing_for_pictures()) {
+            throw InputError("rom validate: no picture can be drawn: {}", *missing);
+        }
+    }
+    if (!std::filesystem::exists(model_file)) {
+        throw InputError("{}: there is no model; first run couture rom train {}",
+                         model_file.string(), campaign.deck.string());
+    }
+    use_rom_threads(common);
+    const io::SnapshotStore training(folder / "snapshots", samples.job());
+    samples.use(make_validation_plan(samples.section(), options.n_points, options.seed));
+    io::SnapshotStore store(
+        folder / fmt::format("validation_{}_{}", options.n_points, options.seed), samples.job());
+    if (campaign.retry) store.clear_failures();
+    store.take_reference(training);
+    const auto reference = samples.make_reference(store);
+    const bool is_whole =
+        run_campaign(campaign, common, samples, *reference, store,
+                     {"rom", "validate", "--points", std::to_string(options.n_points), "--seed",
+                      std::to_string(options.seed)});
+    if (!is_whole) return ExitCode::done;
+
+    TrainedModel trained(model_file);
+    trained.require_job(training);
+    const Validation validation = validate_model(trained, samples, store, options.galerkin);
+    rom::ReducedModel calibrated = trained.model();
+    calibrated.set_calibration(validation.calibration);
+    io::write_reduced_model(model_file,
+                            {calibrated, trained.file().deck, trained.file().provenance});
+
+    std::vector<std::string> files = {model_file.string()};
+    const std::filesystem::path stem = folder / (name + "_validation");
+    files.push_back(stem.string() + ".csv");
+    io::write_text(files.back(), validation_csv(trained, validation));
+    for (const std::string& file :
+         write_worst_point(stem, trained, samples, store, validation, options.png)) {
+        files.push_back(file);
+    }
+    if (options.png) {
+        files.push_back(stem.string() + ".png");
+        draw_validation(files.back(), trained, validation);
+    }
+    const int n_refused = progress_of(samples.plan(), store).n_refused;
+    files.push_back(stem.string() + ".json");
+    const std::string json =
+        validation_json(trained, validation, n_refused, timer.seconds(), files);
+    io::write_text(files.back(), json);
+    if (common.json) {
+        fmt::print("{}", json);
+    } else if (!common.quiet) {
+        print_validation(trained, validation, n_refused);
+        fmt::print("  {:.1f} s; wrote {}\n", timer.seconds(), fmt::join(files, " "));
+    }
+    return n_refused > 0 ? ExitCode::run_failed : ExitCode::done;
+}
+
+}  // namespace couture::drivers

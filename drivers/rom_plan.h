@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/rom_section.h"
+
+namespace couture::drivers {
+
+/// The points that a reduced model is learned from: each of the geometries with each of the loads
+/// and each of the materials. Factored parameters stay in the middle of their ranges.
+struct RomPlan {
+    rom::ParameterSpace space;
+    /// Positions of the parameters that vary, by group.
+    std::vector<int> geometry;
+    std::vector<int> load;
+    std::vector<int> material;
+    /// In the unit cube, n x (parameters of the group); one row where the group has none.
+    MatrixX geometry_points;
+    MatrixX load_points;
+    MatrixX material_points;
+
+    [[nodiscard]] int n_geometries() const { return static_cast<int>(geometry_points.rows()); }
+    [[nodiscard]] int n_loads() const { return static_cast<int>(load_points.rows()); }
+    [[nodiscard]] int n_materials() const { return static_cast<int>(material_points.rows()); }
+    [[nodiscard]] int n_snapshots() const { return n_geometries() * n_loads() * n_materials(); }
+    /// Of all parameters, in their units.
+    [[nodiscard]] VectorX point(int i_geometry, int i_load, int i_material) const;
+    /// Appends points of the geometry. @param points  n x parameters of the group, unit cube
+    void add_geometries(const MatrixX& points);
+};
+
+/// The designs of a deck's section [rom]: that of the geometry, and all combinations of the levels
+/// of loads and of materials.
+///
+/// Source: [Maquart19] Eq. (7.4).
+[[nodiscard]] RomPlan make_rom_plan(const io::RomSection& section);
+
+/// Points at which a model is tested: a maximin Latin hypercube over all parameters, the factored
+/// ones among them. Each point is a geometry of its own.
+[[nodiscard]] RomPlan make_validation_plan(const io::RomSection& section, int n_points,
+                                           std::uint64_t seed);
+
+}  // namespace couture::drivers

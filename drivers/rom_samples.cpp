@@ -1,0 +1,342 @@
+#include "drivers/rom_samples.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "drivers/deck_check.h"
+#include "drivers/job_geometry.h"
+#include "drivers/meshed_geometry.h"
+#include "iga/assembly/constraints.h"
+#include "iga/assembly/loads.h"
+#include "iga/core/error.h"
+#include "iga/core/text_hash.h"
+#include "iga/solve/linear_static.h"
+#include "iga/solve/load_stepping.h"
+#include "iga/solve/static_system.h"
+#include "iga/topology/jacobian_certificate.h"
+#include "io/atomic_file.h"
+#include "io/pants_file.h"
+
+namespace couture::drivers {
+
+namespace {
+
+// Entries of a problem's loads of one kind, put into a case of their own.
+template <typename Load>
+void add_case(std::vector<Load>& all, const std::vector<Load>& more, const std::string& name) {
+    for (const Load& load : more) {
+        all.push_back(load);
+        all.back().load_case = name;
+    }
+}
+
+void add_loads(iga::Problem& all, const iga::Problem& more, const std::string& name) {
+    add_case(all.tractions, more.tractions, name);
+    add_case(all.pressures, more.pressures, name);
+    add_case(all.body_forces, more.body_forces, name);
+    add_case(all.point_loads, more.point_loads, name);
+    add_case(all.resultants, more.resultants, name);
+    add_case(all.temperatures, more.temperatures, name);
+}
+
+iga::Problem without_loads(iga::Problem problem) {
+    problem.tractions.clear();
+    problem.pressures.clear();
+    problem.body_forces.clear();
+    problem.point_loads.clear();
+    problem.resultants.clear();
+    problem.temperatures.clear();
+    return problem;
+}
+
+iga::MultiPatch<3> as_volume(io::AnyMultiPatch geometry, const io::Deck& deck) {
+    auto* volume = std::get_if<iga::MultiPatch<3>>(&geometry);
+    if (volume == nullptr) {
+        throw InputError(
+            "{}: reduced models are made of volumes; this geometry lies in the plane: take the "
+            "solid (for example \"plate_with_hole_3d\")",
+            deck.geometry.source);
+    }
+    return std::move(*volume);
+}
+
+void require_valid(const iga::MultiPatch<3>& geometry) {
+    for (int p = 0; p < geometry.n_patches(); ++p) {
+        const auto certificate = iga::certify(geometry.patches[p]);
+        if (certificate.validity != iga::Validity::valid) {
+            throw GeometryError("patch {} is {}; det J must be proven positive everywhere", p,
+                                iga::to_string(certificate.validity));
+        }
+    }
+}
+
+// Proportional within rounding.
+bool is_multiple(const MatrixX& a, double factor, const MatrixX& b) {
+    constexpr double rounding = 1e-11;
+    return (a - factor * b).norm() <= rounding * std::max(a.norm(), (factor * b).norm());
+}
+
+// @throws InputError  if no reduced model can be made of a deck
+const io::RomSection& checked_section(const io::Deck& deck) {
+    const std::string name = deck.path.filename().string();
+    if (!deck.rom) {
+        throw InputError(
+            "{}: has no section [rom]; a reduced model needs one with its [[rom.parameter]]", name);
+    }
+    if (deck.problem.load_cases().size() > 1 || !deck.problem.combinations.empty()) {
+        throw InputError(
+            "{}: has {} load cases and {} combinations; a reduced model is of one: write a deck "
+            "for "
+            "each, or make the loads parameters",
+            name, deck.problem.load_cases().size(), deck.problem.combinations.size());
+    }
+    return *deck.rom;
+}
+
+}  // namespace
+
+std::string describe_point(const rom::ParameterSpace& space, const VectorX& point) {
+    std::vector<std::string> values;
+    for (int i = 0; i < space.size(); ++i) {
+        const rom::Parameter& parameter = space.parameters()[i];
+        values.push_back(fmt::format("{} = {:.6g}{}{}", parameter.name, point[i],
+                                     parameter.unit.empty() ? "" : " ", parameter.unit));
+    }
+    return fmt::format("{}", fmt::join(values, ", "));
+}
+
+MatrixX control_points_of(const iga::Space<3>& member) {
+    MatrixX points(member.n_dofs(), 3);
+    for (int p = 0; p < member.n_patches(); ++p) {
+        points(member.dofs(p), Eigen::all) = member.geometry().patches[p].control_points();
+    }
+    return points;
+}
+
+iga::MultiPatch<3> with_control_points(const iga::Space<3>& reference,
+                                       const MatrixX& control_points) {
+    iga::MultiPatch<3> member = reference.geometry();
+    for (int p = 0; p < member.n_patches(); ++p) {
+        const iga::Patch<3>& patch = member.patches[p];
+        member.patches[p] = iga::Patch<3>(
+            patch.space(), control_points(reference.dofs(p), Eigen::all), patch.weights());
+    }
+    return member;
+}
+
+RomSamples::RomSamples(const std::filesystem::path& path, const std::vector<std::string>& overrides)
+    : path_(path),
+      overrides_(overrides),
+      text_(io::read_text(path)),
+      deck_(io::parse_deck(text_, path, overrides)),
+      plan_(make_rom_plan(checked_section(deck_))),
+      solver_(iga::make_linear_solver(deck_.solver)) {}
+
+void RomSamples::take_added(const io::SnapshotStore& store) {
+    plan_ = make_rom_plan(section());
+    const MatrixX added = store.added_points(static_cast<int>(plan_.geometry.size()));
+    n_added_ = static_cast<int>(added.rows());
+    plan_.add_geometries(added);
+}
+
+std::string RomSamples::job() const {
+    const auto hash_of = [](const std::filesystem::path& file) {
+        return file.empty() ? std::string() : text_hash(io::read_text(file));
+    };
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+    for (const io::RomParameter& one : deck_.rom->parameters) {
+        parameters.push_back({{"name", one.parameter.name},
+                              {"keys", one.keys},
+                              {"unit", one.parameter.unit},
+                              {"range", {one.parameter.lower, one.parameter.upper}},
+                              {"factored", one.is_factored}});
+    }
+    const auto rows = [](const MatrixX& points) {
+        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        for (Eigen::Index i = 0; i < points.rows(); ++i) {
+            const VectorX row = points.row(i);
+            list.push_back(std::vector<double>(row.begin(), row.end()));
+        }
+        return list;
+    };
+    const nlohmann::ordered_json job = {
+        {"program", "couture " COUTURE_VERSION},
+        {"model", text_hash(deck_.model_text)},
+        {"geometry file", hash_of(deck_.geometry.file)},
+        {"meshing deck", hash_of(deck_.geometry.mesh)},
+        {"parameters", parameters},
+        {"geometry points", rows(plan_.geometry_points.topRows(plan_.n_geometries() - n_added_))},
+        {"load points", rows(plan_.load_points)},
+        {"material points", rows(plan_.material_points)}};
+    return job.dump(1) + "\n";
+}
+
+io::Deck RomSamples::deck_at(const VectorX& point) const {
+    std::vector<std::string> all = overrides_;
+    for (std::string& one : deck_.rom->overrides(point)) all.push_back(std::move(one));
+    try {
+        return io::parse_deck(text_, path_, all);
+    } catch (const InputError& error) {
+        throw InputError("{}: at {}: {}", path_.filename().string(),
+                         describe_point(plan_.space, point), error.what());
+    }
+}
+
+iga::SpacePtr<3> RomSamples::make_reference(io::SnapshotStore& store) const {
+    if (auto reference = store.reference()) {
+        return std::make_shared<const iga::Space<3>>(std::move(*reference));
+    }
+    const io::Deck deck = deck_at(plan_.space.centre());
+    iga::MultiPatch<3> geometry;
+    if (deck.geometry.mesh.empty()) {
+        geometry = as_volume(load_geometry(deck), deck);
+    } else {
+        MeshStages stages = mesh_geometry(deck);
+        if (!stages.record) {
+            throw InputError(
+                "{}: its volume follows a layout of its own, which other members can't repeat; "
+                "leave 'layout' out of {}",
+                deck.geometry.source, deck.geometry.mesh.filename().string());
+        }
+        io::write_layout_record(store.record_file(), *stages.record, stages.solid->cuboids.record,
+                                "reference of a reduced model");
+        io::AnyMultiPatch volume = std::move(stages.solid->volume->volume);
+        add_deck_sets(deck.geometry, volume);
+        geometry = as_volume(std::move(volume), deck);
+    }
+    check_deck<3>(deck, geometry);
+    auto space = make_space<3>(deck, geometry);
+    require_valid(space->geometry());
+    store.write_reference(space->geometry());
+    return space;
+}
+
+iga::SpacePtr<3> RomSamples::make_member(const VectorX& point, const iga::Space<3>& reference,
+                                         const io::SnapshotStore& store) const {
+    const io::Deck deck = deck_at(point);
+    iga::MultiPatch<3> geometry;
+    if (deck.geometry.mesh.empty()) {
+        geometry = as_volume(load_geometry(deck), deck);
+    } else {
+        io::AnyMultiPatch volume =
+            std::move(mesh_geometry(deck, store.record_file()).solid->volume->volume);
+        add_deck_sets(deck.geometry, volume);
+        geometry = as_volume(std::move(volume), deck);
+    }
+    auto space = make_space<3>(deck, geometry);
+    const std::string expected = iga::signature(reference.geometry());
+    if (const std::string found = iga::signature(space->geometry()); found != expected) {
+        throw TopologyError("not isotopological: its signature is {}, that of the reference {}",
+                            found, expected);
+    }
+    require_valid(space->geometry());
+    for (int p = 0; p < space->n_patches(); ++p) {
+        const VectorX& weights = space->geometry().patches[p].weights();
+        const VectorX& expected_weights = reference.geometry().patches[p].weights();
+        if (weights.size() != expected_weights.size() ||
+            !is_multiple(weights, 1.0, expected_weights)) {
+            throw GeometryError(
+                "the weights of patch {} are not those of the reference: its shape is no sum of "
+                "modes",
+                p);
+        }
+    }
+    return space;
+}
+
+MatrixX RomSamples::solve(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points) {
+    std::vector<io::Deck> decks;
+    for (const VectorX& point : points) decks.push_back(deck_at(point));
+    MatrixX result(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
+    const bool moves_supports = std::any_of(
+        deck_.rom->parameters.begin(), deck_.rom->parameters.end(),
+        [](const auto& parameter) { return parameter.keys.front().starts_with("displacement."); });
+    if (!deck_.is_hyperelastic() && !moves_supports) return solve_linear(member, decks);
+    for (std::size_t l = 0; l < decks.size(); ++l) {
+        auto column = result.col(static_cast<Eigen::Index>(l));
+        if (!deck_.is_hyperelastic()) {
+            column = solve_linear(member, {decks[l]});
+            continue;
+        }
+        MatrixX displacement;
+        const auto report = iga::follow_loads<3>(
+            iga::make_start<3>(member), decks[l].problem, decks[l].stepping,
+            [&](const iga::AcceptedStep<3>& step) { displacement = step.state.displacement; });
+        if (!report.finished) {
+            throw SolverError("the run stopped at t = {:.6g} of {:.6g}: {}", report.t,
+                              decks[l].stepping.end, report.reason);
+        }
+        column = iga::flatten(displacement);
+    }
+    return result;
+}
+
+MatrixX RomSamples::solve_linear(const iga::SpacePtr<3>& member,
+                                 const std::vector<io::Deck>& decks) {
+    iga::Problem problem = without_loads(decks.front().problem);
+    for (std::size_t l = 0; l < decks.size(); ++l) {
+        add_loads(problem, decks[l].problem, fmt::format("load {}", l));
+    }
+    if (decks.size() == 1) problem = decks.front().problem;
+    iga::LinearStaticOptions options;
+    options.solver = deck_.solver;
+    options.n_gauss_points = deck_.discretization.n_gauss_points;
+    options.reused_solver = solver_.get();
+    const auto result = iga::solve_linear_static<3>(member, problem, options);
+    MatrixX displacements(3L * member->n_dofs(), static_cast<Eigen::Index>(decks.size()));
+    for (std::size_t l = 0; l < decks.size(); ++l) {
+        displacements.col(static_cast<Eigen::Index>(l)) =
+            iga::flatten(result.cases[l].displacement.coefficients);
+    }
+    return displacements;
+}
+
+void RomSamples::check_factored(const iga::SpacePtr<3>& reference) const {
+    const VectorX centre = plan_.space.centre();
+    const auto& points = deck_.discretization.n_gauss_points;
+    const auto loads_of = [&](const iga::Problem& problem) {
+        return iga::assemble_loads<3>(*reference, problem, problem.load_cases().front(), points);
+    };
+    const auto foundations_of = [&](const iga::Problem& problem) {
+        return MatrixX(VectorX(iga::assemble_foundations<3>(*reference, problem, points) *
+                               VectorX::Ones(3L * reference->n_dofs())));
+    };
+    for (int i = 0; i < plan_.space.size(); ++i) {
+        const io::RomParameter& parameter = deck_.rom->parameters[i];
+        if (!parameter.is_factored) continue;
+        const auto refuse = [&](const std::string& why) {
+            throw InputError("{}: '{}' can't be factored: {}; leave 'factored' out",
+                             parameter.source, parameter.parameter.name, why);
+        };
+        if (deck_.is_hyperelastic()) refuse("the materials are hyperelastic");
+        const bool is_load = parameter.parameter.group == rom::ParameterGroup::load;
+        const iga::Problem middle = deck_at(centre).problem;
+        const auto constraints = iga::make_constraints<3>(*reference, middle, middle.load_cases());
+        if (!constraints.values.isZero(0.0)) refuse("supports are displaced");
+        if (!middle.temperatures.empty()) refuse("there are thermal strains");
+        for (const double end : {0.0, 1.0}) {
+            VectorX point = centre;
+            point[i] = end == 0.0 ? parameter.parameter.lower : parameter.parameter.upper;
+            const iga::Problem problem = deck_at(point).problem;
+            const double ratio = point[i] / centre[i];
+            if (!is_multiple(loads_of(problem), is_load ? ratio : 1.0, loads_of(middle))) {
+                refuse(is_load ? "not all loads are proportional to it" : "loads depend on it");
+            }
+            const double stiffness_ratio = is_load ? 1.0 : ratio;
+            if (!is_multiple(foundations_of(problem), stiffness_ratio, foundations_of(middle))) {
+                refuse("foundations are not proportional to it");
+            }
+            for (std::size_t m = 0; m < problem.materials.size(); ++m) {
+                if (!is_multiple(problem.materials[m].stiffness, stiffness_ratio,
+                                 middle.materials[m].stiffness)) {
+                    refuse(fmt::format("the stiffness of material '{}' is not proportional to it",
+                                       problem.materials[m].name));
+                }
+            }
+        }
+    }
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+
+#include "drivers/rom_plan.h"
+#include "iga/linalg/sparse_solver.h"
+#include "iga/topology/space.h"
+#include "io/deck.h"
+#include "io/snapshot_store.h"
+
+namespace couture::drivers {
+
+/// Members of a deck's family and their solutions, each made from its parameters and the reference
+/// member alone, whatever else was made before.
+class RomSamples {
+  public:
+    /// @param path, overrides  the deck, with a section [rom]
+    /// @throws what read_deck throws; InputError for a deck without [rom], in the plane, or with
+    ///         several load cases
+    RomSamples(const std::filesystem::path& path, const std::vector<std::string>& overrides);
+
+    [[nodiscard]] const io::Deck& deck() const { return deck_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+    [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
+    [[nodiscard]] const io::RomSection& section() const { return *deck_.rom; }
+    [[nodiscard]] const RomPlan& plan() const { return plan_; }
+    /// Takes over the geometries that were added to a store of the deck's design.
+    void take_added(const io::SnapshotStore& store);
+    /// From now on other points than the deck's design.
+    void use(RomPlan plan) {
+        plan_ = std::move(plan);
+        n_added_ = 0;
+    }
+    /// What snapshots depend on, as JSON: model, design, files, version of the program.
+    [[nodiscard]] std::string job() const;
+
+    /// The deck with the parameters at a point. @param point  in their units
+    /// @throws InputError  naming the point, for values that the deck can't have
+    [[nodiscard]] io::Deck deck_at(const VectorX& point) const;
+
+    /// The space of the member in the middle of all ranges; the store's, if it has one.
+    /// @throws what meshing, building and check_deck throw
+    [[nodiscard]] iga::SpacePtr<3> make_reference(io::SnapshotStore& store) const;
+
+    /// The space of another member.
+    ///
+    /// @throws GeometryError, TopologyError  also for a folded member and for one of another
+    ///                                       signature or other weights than the reference
+    [[nodiscard]] iga::SpacePtr<3> make_member(const VectorX& point, const iga::Space<3>& reference,
+                                               const io::SnapshotStore& store) const;
+
+    /// Displacements of a member, 3 n_nodes x n_loads, unknown 3 * node + component: linear
+    /// statics, all loads with one factorization, or the end of each run over time.
+    ///
+    /// @param points  of the parameters, one for each load, in their units
+    /// @throws what the solvers throw; SolverError for a run that does not reach its end
+    [[nodiscard]] MatrixX solve(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points);
+
+    /// Checks that displacements are proportional to each factored load and inversely to each
+    /// factored modulus, whatever the rest.
+    ///
+    /// @throws InputError  naming the parameter and the condition that does not hold
+    void check_factored(const iga::SpacePtr<3>& reference) const;
+
+  private:
+    [[nodiscard]] MatrixX solve_linear(const iga::SpacePtr<3>& member,
+                                       const std::vector<io::Deck>& decks);
+
+    std::filesystem::path path_;
+    std::vector<std::string> overrides_;
+    std::string text_;
+    io::Deck deck_;
+    RomPlan plan_;
+    // The last of its geometries, which the job knows nothing of.
+    int n_added_ = 0;
+    // Its pattern and order are those of all members.
+    std::unique_ptr<iga::LinearSolver> solver_;
+};
+
+/// "R1 = 11 mm, load = 140 N".
+[[nodiscard]] std::string describe_point(const rom::ParameterSpace& space, const VectorX& point);
+
+/// n_nodes x 3: the control points of a member, shared ones once.
+[[nodiscard]] MatrixX control_points_of(const iga::Space<3>& member);
+/// The member of that reference with these control points.
+[[nodiscard]] iga::MultiPatch<3> with_control_points(const iga::Space<3>& reference,
+                                                     const MatrixX& control_points);
+
+}  // namespace couture::drivers

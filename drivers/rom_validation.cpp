@@ -1,0 +1,321 @@
+#include "drivers/rom_validation.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "drivers/result_files.h"
+#include "drivers/rom_json.h"
+#include "iga/core/error.h"
+#include "iga/core/log.h"
+#include "iga/solve/static_system.h"
+#include "io/line_plot.h"
+#include "rom/galerkin.h"
+
+namespace couture::drivers {
+
+namespace {
+
+struct FullSolution {
+    VectorX control_points;
+    VectorX displacement;
+};
+
+FullSolution full_solution(const io::SnapshotStore& store, const std::string& signature, int i) {
+    return {iga::flatten(store.geometry(i, signature)), store.solution(i, 0, signature).col(0)};
+}
+
+// Errors of the displacement with the first 1, 2, ... modes.
+VectorX errors_by_modes(const rom::ReducedModel& model, const MatrixX& modes,
+                        const rom::InnerProduct& product, const rom::Evaluation& evaluation,
+                        const VectorX& displacement) {
+    const double size = std::sqrt(product.squared_norms(displacement)[0]);
+    const VectorX& a = evaluation.displacement_coefficients;
+    VectorX errors(a.size());
+    VectorX u = evaluation.factor * model.displacement_mean();
+    for (Eigen::Index k = 0; k < a.size(); ++k) {
+        u += evaluation.factor * a[k] * modes.col(k);
+        const VectorX difference = u - displacement;
+        errors[k] = std::sqrt(product.squared_norms(difference)[0]) / size;
+    }
+    return errors;
+}
+
+rom::Calibration calibrate(const TrainedModel& trained, const Validation& validation,
+                           const rom::Calibration& before) {
+    const auto n = static_cast<Eigen::Index>(validation.points.size());
+    VectorX geometry(n);
+    VectorX displacement(n);
+    VectorX von_mises(n);
+    VectorX expected_geometry(n);
+    VectorX expected_displacement(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const ValidationPoint& one = validation.points[i];
+        const rom::ErrorEstimates estimates = trained.model().errors(one.point);
+        geometry[i] = one.kriging.geometry;
+        displacement[i] = one.kriging.displacement;
+        von_mises[i] = one.kriging.von_mises;
+        expected_geometry[i] = estimates.geometry.relative / before.geometry;
+        expected_displacement[i] = estimates.displacement.relative / before.displacement;
+    }
+    rom::Calibration calibration;
+    calibration.n_points = static_cast<int>(n);
+    // A geometry that is known exactly has nothing to be calibrated by.
+    constexpr double rounding = 1e-14;
+    if (expected_geometry.minCoeff() > rounding) {
+        calibration.geometry = rom::calibration_factor(geometry, expected_geometry);
+    }
+    calibration.displacement = rom::calibration_factor(displacement, expected_displacement);
+    calibration.von_mises =
+        rom::calibration_factor(von_mises, calibration.displacement * expected_displacement);
+    return calibration;
+}
+
+nlohmann::ordered_json to_json(const Statistics& one) {
+    return {{"mean", one.mean}, {"median", one.median}, {"worst", one.worst}};
+}
+
+struct Measure {
+    const char* name;
+    const char* title;
+    double PredictionErrors::*value;
+};
+
+constexpr std::array<Measure, 6> measures{{
+    {"displacement", "displacement", &PredictionErrors::displacement},
+    {"displacement_max", "  largest difference", &PredictionErrors::displacement_max},
+    {"geometry", "geometry", &PredictionErrors::geometry},
+    {"geometry_max", "  largest difference", &PredictionErrors::geometry_max},
+    {"von_mises", "von Mises", &PredictionErrors::von_mises},
+    {"von_mises_max", "  largest value", &PredictionErrors::von_mises_max},
+}};
+
+VectorX sorted(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// Of what is positive; the rest is as small as the smallest that is.
+VectorX log10_of(const VectorX& values) {
+    constexpr double least = 1e-16;
+    return values.cwiseMax(least).array().log10();
+}
+
+}  // namespace
+
+Statistics statistics_of(const std::vector<double>& values) {
+    if (values.empty()) throw InputError("statistics: there are no numbers");
+    Statistics result;
+    result.mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    const auto worst = std::max_element(values.begin(), values.end());
+    result.worst = *worst;
+    result.i_worst = static_cast<int>(worst - values.begin());
+    const VectorX rising = sorted(values);
+    const Eigen::Index n = rising.size();
+    result.median = 0.5 * (rising[(n - 1) / 2] + rising[n / 2]);
+    return result;
+}
+
+std::vector<double> Validation::errors(double PredictionErrors::*measure) const {
+    std::vector<double> values;
+    for (const ValidationPoint& one : points) values.push_back(one.kriging.*measure);
+    return values;
+}
+
+std::vector<double> Validation::galerkin_errors(double PredictionErrors::*measure) const {
+    std::vector<double> values;
+    for (const ValidationPoint& one : points) {
+        if (one.galerkin) values.push_back((*one.galerkin).*measure);
+    }
+    return values;
+}
+
+VectorX Validation::mean_by_modes() const {
+    VectorX sum = VectorX::Zero(points.front().by_modes.size());
+    for (const ValidationPoint& one : points) sum += one.by_modes;
+    return sum / static_cast<double>(points.size());
+}
+
+Validation validate_model(const TrainedModel& trained, const RomSamples& samples,
+                          const io::SnapshotStore& store, bool with_galerkin) {
+    const rom::ReducedModel& model = trained.model();
+    const std::string signature = iga::signature(model.parts().reference);
+    const rom::InnerProduct product =
+        rom::mode_product(*model.space(), model.parts().options.product);
+    const rom::FieldSampler sampler(
+        model.space(), rom::make_sample_grids(*model.space(), rom::SampleRegion::volume));
+    const MatrixX modes = model.displacement_modes();
+    Validation validation;
+    for (int i = 0; i < samples.plan().n_geometries(); ++i) {
+        if (!store.has_solution(i, 0)) continue;
+        const FullSolution full = full_solution(store, signature, i);
+        ValidationPoint one;
+        one.point = samples.plan().point(i, 0, 0);
+        const io::Deck deck = trained.deck_at(one.point);
+        const rom::Evaluation evaluation = model.evaluate(one.point);
+        const auto measure = [&](const VectorX& displacement) {
+            return measure_prediction(product, sampler, deck.problem, full.control_points,
+                                      full.displacement, evaluation.control_points, displacement);
+        };
+        one.kriging = measure(evaluation.displacement);
+        one.estimate = model.errors(one.point).displacement.relative;
+        one.by_modes = errors_by_modes(model, modes, product, evaluation, full.displacement);
+        if (with_galerkin) {
+            one.galerkin = measure(rom::solve_galerkin(model, evaluation, deck.problem, "",
+                                                       deck.discretization.n_gauss_points)
+                                       .displacement);
+        }
+        validation.points.push_back(std::move(one));
+        log::detail(fmt::format("rom: compared {} of {}", i + 1, samples.plan().n_geometries()));
+    }
+    if (validation.points.empty()) {
+        throw InputError("rom validate: no point was solved; see what was refused above");
+    }
+    validation.calibration = calibrate(trained, validation, model.parts().calibration);
+    return validation;
+}
+
+std::string validation_json(const TrainedModel& trained, const Validation& validation,
+                            int n_refused, double seconds, const std::vector<std::string>& files) {
+    nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                     {"status", n_refused > 0 ? "failed" : "done"},
+                                     {"model", trained.path().string()},
+                                     {"points", validation.points.size()},
+                                     {"refused", n_refused}};
+    for (const Measure& measure : measures) {
+        object["errors"][measure.name] = to_json(statistics_of(validation.errors(measure.value)));
+        const auto galerkin = validation.galerkin_errors(measure.value);
+        if (!galerkin.empty()) {
+            object["galerkin_errors"][measure.name] = to_json(statistics_of(galerkin));
+        }
+    }
+    const VectorX by_modes = validation.mean_by_modes();
+    object["error_by_modes"] = std::vector<double>(by_modes.begin(), by_modes.end());
+    object["calibration"] = {{"geometry", validation.calibration.geometry},
+                             {"displacement", validation.calibration.displacement},
+                             {"von_mises", validation.calibration.von_mises}};
+    object["samples"] = nlohmann::ordered_json::array();
+    const rom::ParameterSpace& space = trained.model().parameters();
+    for (const ValidationPoint& one : validation.points) {
+        nlohmann::ordered_json sample;
+        sample["parameters"] = parameters_json(space, one.point);
+        sample["errors"] = to_json(one.kriging);
+        if (one.galerkin) sample["galerkin_errors"] = to_json(*one.galerkin);
+        sample["estimate"] = one.estimate;
+        object["samples"].push_back(std::move(sample));
+    }
+    object["seconds"] = seconds;
+    object["warnings"] = log::warnings();
+    object["files"] = files;
+    return object.dump(2) + "\n";
+}
+
+std::string validation_csv(const TrainedModel& trained, const Validation& validation) {
+    const rom::ParameterSpace& space = trained.model().parameters();
+    const bool has_galerkin = validation.points.front().galerkin.has_value();
+    std::string text;
+    for (const rom::Parameter& one : space.parameters()) text += one.name + ",";
+    for (const Measure& measure : measures) text += fmt::format("{},", measure.name);
+    if (has_galerkin) {
+        for (const Measure& measure : measures) text += fmt::format("galerkin_{},", measure.name);
+    }
+    text += "estimate\n";
+    for (const ValidationPoint& one : validation.points) {
+        for (const double value : one.point) text += fmt::format("{:.10g},", value);
+        for (const Measure& measure : measures) {
+            text += fmt::format("{:.6e},", one.kriging.*measure.value);
+        }
+        if (has_galerkin) {
+            for (const Measure& measure : measures) {
+                text += fmt::format("{:.6e},", (*one.galerkin).*measure.value);
+            }
+        }
+        text += fmt::format("{:.6e}\n", one.estimate);
+    }
+    return text;
+}
+
+void print_validation(const TrainedModel& trained, const Validation& validation, int n_refused) {
+    fmt::print("{}: {} points{}\n", trained.path().string(), validation.points.size(),
+               n_refused > 0 ? fmt::format(", {} refused", n_refused) : "");
+    fmt::print("  {:<22} {:>10} {:>10} {:>10}   (relative, %)\n", "error", "mean", "median",
+               "worst");
+    const auto print = [](const std::string& name, const Statistics& one) {
+        fmt::print("  {:<22} {:>10.4f} {:>10.4f} {:>10.4f}\n", name, 100.0 * one.mean,
+                   100.0 * one.median, 100.0 * one.worst);
+    };
+    for (const Measure& measure : measures) {
+        print(measure.title, statistics_of(validation.errors(measure.value)));
+    }
+    if (validation.points.front().galerkin) {
+        fmt::print("  with Galerkin:\n");
+        for (const Measure& measure : measures) {
+            print(measure.title, statistics_of(validation.galerkin_errors(measure.value)));
+        }
+    }
+    const Statistics worst = statistics_of(validation.errors(&PredictionErrors::displacement));
+    fmt::print("  worst at {}\n", describe_point(trained.model().parameters(),
+                                                 validation.points[worst.i_worst].point));
+}
+
+void draw_validation(const std::filesystem::path& path, const TrainedModel& trained,
+                     const Validation& validation) {
+    const rom::ReducedModelParts& parts = trained.model().parts();
+    const auto plot = [](const VectorX& values, const std::string& title, const std::string& x,
+                         const std::string& y) {
+        return io::make_line_plot(values, {title, x, y});
+    };
+    std::vector<std::vector<io::Scene>> rows(2);
+    rows[0].push_back(plot(100.0 * sorted(validation.errors(&PredictionErrors::displacement)),
+                           "displacement", "points, best first", "relative error, %"));
+    rows[0].push_back(plot(100.0 * sorted(validation.errors(&PredictionErrors::von_mises)),
+                           "von Mises", "points, best first", "relative error, %"));
+    rows[1].push_back(plot(log10_of(validation.mean_by_modes()), "number of modes", "mode, from 0",
+                           "log10 of the mean error of displacements"));
+    const VectorX& sigma = parts.models[parts.displacement.i_model].basis().singular_values;
+    rows[1].push_back(plot(log10_of(sigma / sigma[0]), "singular values of displacements",
+                           "mode, from 0", "log10 of value / largest"));
+    io::render_png(path, rows);
+}
+
+std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
+                                           const TrainedModel& trained, const RomSamples& samples,
+                                           const io::SnapshotStore& store,
+                                           const Validation& validation, bool png) {
+    const rom::ReducedModel& model = trained.model();
+    const Statistics worst = statistics_of(validation.errors(&PredictionErrors::displacement));
+    const VectorX& point = validation.points[worst.i_worst].point;
+    int i_stored = 0;
+    while (samples.plan().point(i_stored, 0, 0) != point) ++i_stored;
+    const FullSolution full =
+        full_solution(store, iga::signature(model.parts().reference), i_stored);
+    const rom::Evaluation evaluation = model.evaluate(point);
+    io::Deck deck = trained.deck_at(point);
+    deck.output.vtu = true;
+    deck.output.png = png;
+    std::vector<std::string> files;
+    const auto write = [&](const char* name, const VectorX& control_points,
+                           const VectorX& displacement) {
+        deck.path = std::filesystem::path(stem.filename().string() + "_worst_" + name + ".toml");
+        deck.title = name;
+        const auto space = std::make_shared<const iga::Space<3>>(
+            with_control_points(*model.space(), iga::unflatten(control_points, 3)));
+        iga::LinearStaticResult<3> result;
+        result.cases.emplace_back();
+        result.cases.back().displacement = {space, iga::unflatten(displacement, 3)};
+        for (const auto& file :
+             write_result_files<3>(deck, space, result, {}, stem.parent_path())) {
+            files.push_back(file.string());
+        }
+    };
+    write("predicted", evaluation.control_points, evaluation.displacement);
+    write("computed", full.control_points, full.displacement);
+    write("difference", full.control_points, evaluation.displacement - full.displacement);
+    return files;
+}
+
+}  // namespace couture::drivers

@@ -1,0 +1,236 @@
+#include "rom/coefficient_model.h"
+
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "iga/core/error.h"
+#include "iga/core/parallel.h"
+
+namespace couture::rom {
+
+namespace {
+
+using ArrayX = Eigen::ArrayXd;
+
+/// Runs make(k) for all coefficients, naming the one whose model can't be made.
+template <typename Make>
+std::vector<Kriging> make_models(int n, const Make& make) {
+    std::vector<std::optional<Kriging>> made(n);
+    parallel_for(n, [&](int k) {
+        try {
+            made[k] = make(k);
+        } catch (const InputError& error) {
+            throw InputError("coefficient {}: {}", k, error.what());
+        }
+    });
+    std::vector<Kriging> models;
+    for (std::optional<Kriging>& model : made) {
+        models.push_back(std::move(*model));
+    }
+    return models;
+}
+
+/// Correlations of one factor's points with a point, n_coefficients x points: as `correlations`,
+/// with one exponential for all axes.
+MatrixX factor_correlations(CorrelationKind kind, const MatrixX& points, const VectorX& point,
+                            const MatrixX& inverse_lengths) {
+    const Eigen::Index n = inverse_lengths.rows();
+    MatrixX K(n, points.rows());
+    ArrayX exponent(n);
+    ArrayX polynomial(n);
+    ArrayX s(n);
+    for (Eigen::Index j = 0; j < points.rows(); ++j) {
+        exponent.setZero();
+        polynomial.setOnes();
+        for (Eigen::Index axis = 0; axis < points.cols(); ++axis) {
+            const double distance = std::abs(point[axis] - points(j, axis));
+            if (kind == CorrelationKind::gaussian) {
+                s = distance * inverse_lengths.col(axis).array();
+                exponent += 0.5 * s * s;
+            } else {
+                s = (std::sqrt(5.0) * distance) * inverse_lengths.col(axis).array();
+                exponent += s;
+                polynomial *= 1.0 + s + s * s * (1.0 / 3.0);
+            }
+        }
+        K.col(j) = (polynomial * (-exponent).exp()).matrix();
+    }
+    return K;
+}
+
+/// Derivatives of these by one of the factor's inputs.
+MatrixX factor_slopes(CorrelationKind kind, const MatrixX& points, const VectorX& point,
+                      const MatrixX& inverse_lengths, Eigen::Index input, const MatrixX& K) {
+    MatrixX slopes(K.rows(), K.cols());
+    for (Eigen::Index j = 0; j < K.cols(); ++j) {
+        for (Eigen::Index k = 0; k < K.rows(); ++k) {
+            slopes(k, j) = K(k, j) * difference_derivative(kind, point[input] - points(j, input),
+                                                           1.0 / inverse_lengths(k, input));
+        }
+    }
+    return slopes;
+}
+
+/// For each coefficient the sum over all points of weight times product of the factors'
+/// correlations: factor by factor from the last, which is the fastest.
+VectorX contract(const std::vector<MatrixX>& factors, const MatrixX& weights) {
+    MatrixX sums = weights;
+    for (std::size_t g = factors.size(); g-- > 0;) {
+        const MatrixX& K = factors[g];
+        MatrixX shorter = MatrixX::Zero(sums.rows(), sums.cols() / K.cols());
+        for (Eigen::Index i = 0; i < shorter.cols(); ++i) {
+            for (Eigen::Index j = 0; j < K.cols(); ++j) {
+                shorter.col(i) += K.col(j).cwiseProduct(sums.col(i * K.cols() + j));
+            }
+        }
+        sums = std::move(shorter);
+    }
+    return sums.col(0);
+}
+
+}  // namespace
+
+CoefficientModel::CoefficientModel(TensorDesign design, MatrixX values,
+                                   const KrigingOptions& options)
+    : design_(std::move(design)), options_(options), training_(std::move(values)) {
+    if (n_inputs() > 0) {
+        models_ = make_models(n_coefficients(),
+                              [&](int k) { return Kriging(design_, training_.col(k), options_); });
+    }
+    collect();
+}
+
+CoefficientModel::CoefficientModel(TensorDesign design, MatrixX values,
+                                   const KrigingOptions& options,
+                                   const std::vector<KrigingParameters>& parameters)
+    : design_(std::move(design)), options_(options), training_(std::move(values)) {
+    if (n_inputs() > 0) {
+        if (static_cast<int>(parameters.size()) != n_coefficients()) {
+            throw InputError("CoefficientModel: {} kriging parameters for {} coefficients",
+                             parameters.size(), n_coefficients());
+        }
+        models_ = make_models(n_coefficients(), [&](int k) {
+            return Kriging(design_, training_.col(k), options_, parameters[k]);
+        });
+    }
+    collect();
+}
+
+void CoefficientModel::collect() {
+    if (models_.empty()) {
+        if (n_coefficients() > 0 && (n_inputs() > 0 || training_.rows() != 1)) {
+            throw InputError("CoefficientModel: {} values of each coefficient without an input",
+                             training_.rows());
+        }
+        return;
+    }
+    const int n = n_coefficients();
+    inverse_lengths_.resize(n, n_inputs());
+    trends_.resize(n, models_[0].trend_coefficients().size());
+    weights_.resize(n, training_.rows());
+    for (int k = 0; k < n; ++k) {
+        inverse_lengths_.row(k) = models_[k].parameters().lengths.cwiseInverse().transpose();
+        trends_.row(k) = models_[k].trend_coefficients().transpose();
+        weights_.row(k) = models_[k].weights().transpose();
+    }
+}
+
+std::vector<KrigingParameters> CoefficientModel::parameters() const {
+    std::vector<KrigingParameters> parameters;
+    for (const Kriging& model : models_) {
+        parameters.push_back(model.parameters());
+    }
+    return parameters;
+}
+
+namespace {
+
+/// Calls body(g, points, point, inverse lengths, first input) for each factor g.
+template <typename Body>
+void for_factors(const TensorDesign& design, const VectorX& point, const MatrixX& inverse_lengths,
+                 const Body& body) {
+    Eigen::Index first = 0;
+    for (std::size_t g = 0; g < design.factors.size(); ++g) {
+        const Eigen::Index n = design.factors[g].cols();
+        body(g, design.factors[g], point.segment(first, n), inverse_lengths.middleCols(first, n),
+             first);
+        first += n;
+    }
+}
+
+std::vector<MatrixX> all_correlations(const TensorDesign& design, CorrelationKind kind,
+                                      const VectorX& point, const MatrixX& inverse_lengths) {
+    std::vector<MatrixX> factors(design.factors.size());
+    for_factors(design, point, inverse_lengths,
+                [&](std::size_t g, const MatrixX& points, const VectorX& x, const MatrixX& inverse,
+                    Eigen::Index) { factors[g] = factor_correlations(kind, points, x, inverse); });
+    return factors;
+}
+
+}  // namespace
+
+VectorX CoefficientModel::values(const VectorX& point) const {
+    assert(point.size() == n_inputs());
+    if (models_.empty()) {
+        return training_.rows() == 1 ? VectorX(training_.row(0)) : VectorX();
+    }
+    VectorX values = trends_.col(0) + contract(all_correlations(design_, options_.correlation,
+                                                                point, inverse_lengths_),
+                                               weights_);
+    if (options_.trend == Trend::linear) {
+        values += trends_.rightCols(n_inputs()) * point;
+    }
+    return values;
+}
+
+MatrixX CoefficientModel::gradient(const VectorX& point) const {
+    assert(point.size() == n_inputs());
+    MatrixX gradient = MatrixX::Zero(n_coefficients(), n_inputs());
+    if (models_.empty()) {
+        return gradient;
+    }
+    if (options_.trend == Trend::linear) {
+        gradient = trends_.rightCols(n_inputs());
+    }
+    const std::vector<MatrixX> factors =
+        all_correlations(design_, options_.correlation, point, inverse_lengths_);
+    for_factors(design_, point, inverse_lengths_,
+                [&](std::size_t g, const MatrixX& points, const VectorX& x, const MatrixX& inverse,
+                    Eigen::Index first) {
+                    for (Eigen::Index input = 0; input < points.cols(); ++input) {
+                        std::vector<MatrixX> slopes = factors;
+                        slopes[g] = factor_slopes(options_.correlation, points, x, inverse, input,
+                                                  factors[g]);
+                        gradient.col(first + input) += contract(slopes, weights_);
+                    }
+                });
+    return gradient;
+}
+
+VectorX CoefficientModel::variances(const VectorX& point) const {
+    assert(point.size() == n_inputs());
+    VectorX variances = VectorX::Zero(n_coefficients());
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+        variances[static_cast<Eigen::Index>(k)] = models_[k].variance(point);
+    }
+    return variances;
+}
+
+MatrixX CoefficientModel::leave_one_out() const {
+    MatrixX residuals = MatrixX::Zero(training_.rows(), training_.cols());
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+        residuals.col(static_cast<Eigen::Index>(k)) = models_[k].leave_one_out();
+    }
+    return residuals;
+}
+
+MatrixX CoefficientModel::leave_one_out_variances() const {
+    MatrixX variances = MatrixX::Zero(training_.rows(), training_.cols());
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+        variances.col(static_cast<Eigen::Index>(k)) = models_[k].leave_one_out_variances();
+    }
+    return variances;
+}
+
+}  // namespace couture::rom

@@ -1,0 +1,244 @@
+// Reduced models, from a deck to answers.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+#include "tests/drivers/run_program.h"
+
+using namespace couture;
+using namespace couture::tests;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string model = R"(title = "Plate with a hole"
+[geometry]
+part = "plate_with_hole_3d"
+[discretization]
+elements = 3
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+[[symmetry]]
+on = ["cut_x", "cut_y", "z_low"]
+[[traction]]
+on = "x_high"
+value = [10, 0, 0]
+)";
+
+const std::string parameters = R"([[rom.parameter]]
+key = "geometry.parameters.hole_radius"
+range = [0.6, 1.4]
+[[rom.parameter]]
+name = "nu"
+key = "material.steel.poissons_ratio"
+range = [0.25, 0.33]
+levels = 3
+[[rom.parameter]]
+name = "load"
+key = "traction.0.value.0"
+range = [5, 15]
+factored = true
+[[rom.parameter]]
+name = "E"
+key = "material.steel.youngs_modulus"
+range = [200, 220]
+unit = "GPa"
+factored = true
+)";
+
+const std::string deck = model + "[rom]\ndesign = \"full\"\nsamples = 5\n" + parameters;
+
+Json run_json(const std::string& arguments, const fs::path& folder) {
+    const auto result = run_couture(arguments + " --json", folder);
+    CAPTURE(arguments, result.errors);
+    REQUIRE(result.exit_code == 0);
+    return Json::parse(result.output);
+}
+
+// Contents of a folder by name, but for the times.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (entry.is_regular_file() && entry.path().filename() != "timings.csv") {
+            files[entry.path().filename().string()] = io::read_text(entry.path());
+        }
+    }
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("rom: a model answers what the full solution says", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    const Json trained = run_json("rom train f.toml --out o", folder.path());
+    CHECK(trained["geometries"] == 5);
+    CHECK(trained["materials"] == 3);
+    CHECK(trained["loads"] == 1);
+    CHECK(trained["solutions"] == 15);
+    const Json validated = run_json("rom validate f.toml --out o -n 8 --galerkin", folder.path());
+    CHECK(validated["errors"]["displacement"]["mean"] < 0.005);
+    CHECK(validated["errors"]["displacement"]["worst"] < 0.02);
+    CHECK(validated["errors"]["von_mises_max"]["mean"] < 0.03);
+    CHECK(validated["errors"]["geometry"]["worst"] < 1e-3);
+    // In the space of the modes the projection is the best in energy.
+    CHECK(validated["galerkin_errors"]["displacement"]["worst"] < 0.02);
+    // Factored parameters are exact: twice the load at half the modulus is four times as much.
+    const Json one = run_json("rom eval o/f.rom --set load=5 --set E=220", folder.path());
+    const Json other = run_json("rom eval o/f.rom --set load=10 --set 'E=220 GPa'", folder.path());
+    CHECK(other["displacement_max"].get<double>() ==
+          Approx(2.0 * one["displacement_max"].get<double>()).epsilon(1e-12));
+    CHECK(other["von_mises_max"].get<double>() ==
+          Approx(2.0 * one["von_mises_max"].get<double>()).epsilon(1e-12));
+    const Json softer =
+        run_json("rom eval o/f.rom --set load=10 --set 'E=200000 MPa'", folder.path());
+    CHECK(softer["displacement_max"].get<double>() ==
+          Approx(1.1 * other["displacement_max"].get<double>()).epsilon(1e-12));
+    CHECK(softer["von_mises_max"].get<double>() ==
+          Approx(other["von_mises_max"].get<double>()).epsilon(1e-9));
+    const Json solved = run_json("rom eval o/f.rom --set hole_radius=0.9 --solve", folder.path());
+    CHECK(solved["errors"]["displacement"] < 0.005);
+    // The file alone answers, elsewhere.
+    fs::create_directory(folder.path() / "elsewhere");
+    fs::rename(folder.path() / "o/f.rom", folder.path() / "elsewhere/m.rom");
+    fs::remove(folder.path() / "f.toml");
+    const Json moved =
+        run_json("rom eval elsewhere/m.rom --set hole_radius=0.9 --out v", folder.path());
+    CHECK(moved["displacement_max"] == solved["displacement_max"]);
+    CHECK(fs::exists(folder.path() / "v/m.vtu"));
+}
+
+TEST_CASE("rom: stores and models are the same however the work was split", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --jobs 1 --out a", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("rom train f.toml --jobs 2 --out b", folder.path()).exit_code == 0);
+    // By shards, the second killed at several moments on the way.
+    REQUIRE(run_couture("rom train f.toml --shard 2/2 --out c", folder.path()).exit_code == 0);
+    for (const char* seconds : {"0.04", "0.06", "0.08", "0.1", "0.12", "0.15", "0.2"}) {
+        static_cast<void>(run_couture("--version", folder.path(),
+                                      std::string("timeout -s KILL ") + seconds + " " +
+                                          COUTURE_PROGRAM +
+                                          " rom train f.toml --out c --quiet; true"));
+    }
+    REQUIRE(run_couture("rom train f.toml --out c", folder.path()).exit_code == 0);
+    // Two shards apart, put together.
+    REQUIRE(run_couture("rom train f.toml --shard 1/2 --out d1", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("rom train f.toml --shard 2/2 --out d2", folder.path()).exit_code == 0);
+    const auto merged = run_couture("rom merge f.toml d1 d2 --out d", folder.path());
+    REQUIRE(merged.exit_code == 0);
+    CHECK_THAT(merged.output, Contains("15 of 15 solutions"));
+    CHECK(run_couture("rom merge f.toml nowhere --out d", folder.path()).exit_code == 2);
+    REQUIRE(run_couture("rom train f.toml --out d", folder.path()).exit_code == 0);
+    const auto snapshots = contents(folder.path() / "a/snapshots");
+    CHECK(snapshots.size() == 22);
+    for (const char* other : {"b", "c", "d"}) {
+        CAPTURE(other);
+        CHECK((contents(folder.path() / other / "snapshots") == snapshots));
+        CHECK((io::read_text(folder.path() / other / "f.rom") ==
+               io::read_text(folder.path() / "a/f.rom")));
+    }
+}
+
+TEST_CASE("rom: samples are added until the expected error is small", "[drivers]") {
+    const TemporaryFolder folder;
+    std::string coarse = deck;
+    coarse.replace(coarse.find("samples = 5"), 11, "samples = 3");
+    io::write_text(folder.path() / "f.toml", coarse);
+    run_json("rom train f.toml", folder.path());
+    const Json before = run_json("rom validate f.toml -n 6", folder.path());
+    const auto enriched =
+        run_couture("rom enrich f.toml --tolerance 1e-3 --max-points 8", folder.path());
+    CAPTURE(enriched.errors, enriched.output);
+    CHECK_THAT(enriched.output, Contains("geometries were added"));
+    const Json after = run_json("rom validate f.toml -n 6", folder.path());
+    CHECK(after["errors"]["displacement"]["worst"].get<double>() <
+          0.5 * before["errors"]["displacement"]["worst"].get<double>());
+    // What was added stays part of the model.
+    const Json trained = run_json("rom train f.toml", folder.path());
+    CHECK(trained["geometries"] > 3);
+    CHECK(
+        run_couture("rom enrich f.toml --tolerance 1e-9 --max-points 1", folder.path()).exit_code ==
+        1);
+}
+
+TEST_CASE("rom: samples that can't be made are listed and left out", "[drivers]") {
+    const TemporaryFolder folder;
+    // A hole of radius 4 is as wide as the plate.
+    std::string wide = deck;
+    wide.replace(wide.find("[0.6, 1.4]"), 10, "[1.0, 4.0]");
+    io::write_text(folder.path() / "f.toml", wide);
+    const auto result = run_couture("rom train f.toml --json", folder.path());
+    CHECK(result.exit_code == 1);
+    const Json object = Json::parse(result.output);
+    CHECK(object["status"] == "failed");
+    CHECK(object["solutions"] == 12);
+    REQUIRE(object["refused"].size() == 1);
+    CHECK_THAT(object["refused"][0]["point"].get<std::string>(), Contains("hole_radius = 4"));
+    CHECK_THAT(object["refused"][0]["reason"].get<std::string>(), Contains("half_width"));
+    CHECK(fs::exists(folder.path() / "out/f/f.rom"));
+    // It stays refused, and is tried again when that is asked for.
+    const auto again = run_couture("rom train f.toml --retry", folder.path());
+    CHECK(again.exit_code == 1);
+    CHECK_THAT(again.errors, Contains("half_width"));
+}
+
+TEST_CASE("rom: what is wrong is said before anything is solved", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto error_of = [&](const std::string& text,
+                              const std::string& command = "rom train f.toml") {
+        io::write_text(folder.path() / "f.toml", text);
+        const auto result = run_couture(command, folder.path());
+        CHECK(result.exit_code == 2);
+        return result.errors;
+    };
+    CHECK_THAT(error_of(model), Contains("f.toml: has no section [rom]"));
+    CHECK_THAT(error_of(deck + "[[traction]]\non = \"y_high\"\nvalue = [1, 0, 0]\n"),
+               Contains("'load' can't be factored: not all loads are proportional to it"));
+    const std::string push = "[[pressure]]\non = \"hole\"\nvalue = 1\ncase = ";
+    CHECK_THAT(error_of(deck + push + "\"a\"\n" + push + "\"b\"\n"), Contains("2 load cases"));
+    std::string two = deck;
+    two.replace(two.find("plate_with_hole_3d"), 18, "plate_with_hole");
+    two.replace(two.find(", \"z_low\""), 9, "");
+    CHECK_THAT(error_of(two), Contains("reduced models are made of volumes"));
+    CHECK_THAT(error_of(deck, "rom train f.toml --shard 3/2"), Contains("must read I/N"));
+    CHECK_THAT(error_of(deck, "rom validate f.toml --out none"), Contains("there is no model"));
+}
+
+TEST_CASE("rom: answers outside of the box are marked, models of other files refused",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --out o", folder.path()).exit_code == 0);
+    const auto near = run_couture("rom eval o/f.rom --set hole_radius=1.5", folder.path());
+    CHECK(near.exit_code == 0);
+    CHECK_THAT(near.errors, Contains("hole_radius = 1.5 lies outside of [0.6, 1.4]"));
+    const auto far = run_couture("rom eval o/f.rom --set hole_radius=1.7", folder.path());
+    CHECK(far.exit_code == 2);
+    CHECK_THAT(far.errors, Contains("--force"));
+    CHECK(run_couture("rom eval o/f.rom --set hole_radius=1.7 --force", folder.path()).exit_code ==
+          0);
+    CHECK_THAT(run_couture("rom eval o/f.rom --set radius=1", folder.path()).errors,
+               Contains("no parameter is called 'radius'"));
+    CHECK_THAT(run_couture("rom eval o/f.rom --set 'E=200 mm'", folder.path()).errors,
+               Contains("is a length, not a pressure"));
+    CHECK_THAT(run_couture("rom eval o/f.rom --set E=stiff", folder.path()).errors,
+               Contains("is no number"));
+    // A store of another deck.
+    std::string other = deck;
+    other.replace(other.find("0.33"), 4, "0.34");
+    io::write_text(folder.path() / "f.toml", other);
+    const auto refused = run_couture("rom train f.toml --out o", folder.path());
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.errors, Contains("of another job: 'parameters' differs"));
+    // A damaged model.
+    std::string bytes = io::read_text(folder.path() / "o/f.rom");
+    io::write_text(folder.path() / "cut.rom", bytes.substr(0, bytes.size() / 2));
+    const auto cut = run_couture("rom eval cut.rom", folder.path());
+    CHECK(cut.exit_code == 2);
+    CHECK_THAT(cut.errors, Contains("cut or changed"));
+}
