@@ -60,6 +60,52 @@ void add_surface_options(CLI::App* sub, Options& options) {
         "lies inside it");
 }
 
+void add_shape_options(CLI::App* sub, ShapeOptions& options) {
+    sub->add_option("members", options.inputs,
+                    "meshes with equal polygons (.vtp, .obj, .off, .ply), spline volumes of one "
+                    "signature, the folder of a family's run, or its deck (results in out/NAME)");
+    sub->add_option("--modes", options.n_modes,
+                    "modes that are written and projected onto (default: as many as leave a "
+                    "relative error below 0.1)");
+    sub->add_option("--reference", options.reference,
+                    "the member where all are moved to (default: the family's, or the nearest to "
+                    "the mean)");
+    sub->add_flag("--no-align", options.no_align, "members stay where they are");
+    sub->add_flag("--scale", options.scale, "members are also scaled to one size");
+    sub->add_option("--project", options.project, "a shape to be expressed by the modes")
+        ->allow_extra_args(false);
+    sub->add_option("--virtual", options.virtual_members,
+                    "a member to be made: C1,C2,... standard deviations of the first modes")
+        ->allow_extra_args(false);
+    sub->add_option("--out", options.out, "folder of the results (default: out/shape)");
+    sub->add_flag("--png", options.png, "draw members, modes and curves");
+}
+
+void add_inflate_options(CLI::App* sub, ShapeInflateOptions& options) {
+    sub->add_option("surface", options.surface,
+                    "the wall of a cavity with any defects (.stl, .obj, .off, .ply, .vtp)")
+        ->required();
+    sub->add_option("--center", options.center, "X,Y,Z inside (default: farthest from the wall)");
+    sub->add_option(
+        "--radius", options.radius,
+        "of the sphere at the start (default: nine tenths of the distance to the wall)");
+    sub->add_option("--strain-limit", options.strain_limit,
+                    "an edge that is longer by this part stops (default: 3)");
+    sub->add_option("--outlet-strain-limit", options.outlet_strain_limit,
+                    "the same where no wall is ahead (default: as elsewhere)");
+    sub->add_option("--ball", options.balls, "X,Y,Z,RADIUS,LIMIT: another strain limit in a ball")
+        ->allow_extra_args(false);
+    sub->add_option("--box", options.boxes,
+                    "X0,Y0,Z0,X1,Y1,Z1,LIMIT: another strain limit in a box")
+        ->allow_extra_args(false);
+    sub->add_option("--hole-size", options.hole_size,
+                    "holes narrower than this are closed (default: as long as most edges)");
+    sub->add_option("--divisions", options.n_divisions,
+                    "n: the sphere has 6 n^2 quads (default: 16)");
+    sub->add_option("--out", options.out, "folder of the results (default: out/<name>)");
+    sub->add_flag("--png", options.png, "draw the quads in the cavity");
+}
+
 /// A word that is no command gets a message of its own: CLI11's names no alternatives.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') {
@@ -268,6 +314,21 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     add_surface_options(sub, *from);
 
     add_rom_commands(app, command);
+
+    const auto shape = std::make_shared<ShapeOptions>();
+    const auto inflate = std::make_shared<ShapeInflateOptions>();
+    // The command's callback comes behind that of its own subcommand.
+    const auto run_either = [&command, shape, inflate] {
+        return inflate->surface.empty() ? run_shape(*shape, command.common)
+                                        : run_shape_inflate(*inflate, command.common);
+    };
+    sub = add_command(app, command, "shape", "mean, modes and members of a population of shapes",
+                      run_either);
+    add_shape_options(sub, *shape);
+    sub = add_command(*sub, command, "inflate",
+                      "a quad mesh in any cavity: a sphere inflated until it meets the wall",
+                      run_either);
+    add_inflate_options(sub, *inflate);
 
     const auto verify = std::make_shared<VerifyOptions>();
     sub = add_command(app, command, "verify", "solve problems with known answers and compare",

@@ -106,15 +106,10 @@ void make_triangles(const std::string& file, RawSurface raw, SurfaceFile& result
     result.n_unused = meshing::drop_unused_points(result.soup) - result.n_merged;
 }
 
-}  // namespace
-
-bool is_surface_file(const std::filesystem::path& path) {
-    const std::string ending = ending_of(path);
-    return ending == ".stl" || ending == ".obj" || ending == ".off" || ending == ".ply" ||
-           ending == ".vtp";
-}
-
-SurfaceFile read_surface_file(const std::filesystem::path& path) {
+/// The file as it is, in bounds.
+///
+/// @param what  is expected in it, for messages
+RawSurface read_checked(const std::filesystem::path& path, const char* what, std::string& format) {
     const std::string file = path.string();
     if (!is_surface_file(path)) {
         throw FileError(
@@ -124,7 +119,7 @@ SurfaceFile read_surface_file(const std::filesystem::path& path) {
     }
     const std::string bytes = read_text(path);
     if (bytes.empty()) {
-        throw FileError("{}: the file is empty; expected triangles", file);
+        throw FileError("{}: the file is empty; expected {}", file, what);
     }
     // Then points, lines and triangles are numbered by int: each takes a byte at least.
     constexpr int max_int = std::numeric_limits<int>::max();
@@ -132,15 +127,38 @@ SurfaceFile read_surface_file(const std::filesystem::path& path) {
         throw FileError("{}: the file has {} bytes; surfaces of up to {} can be read", file,
                         bytes.size(), max_int);
     }
-    SurfaceFile result;
-    RawSurface raw = read_raw(path, without_mark(bytes, ending_of(path)), result.format);
+    RawSurface raw = read_raw(path, without_mark(bytes, ending_of(path)), format);
     check_size(file, raw.points);
+    return raw;
+}
+
+}  // namespace
+
+bool is_surface_file(const std::filesystem::path& path) {
+    const std::string ending = ending_of(path);
+    return ending == ".stl" || ending == ".obj" || ending == ".off" || ending == ".ply" ||
+           ending == ".vtp";
+}
+
+SurfaceFile read_surface_file(const std::filesystem::path& path) {
+    SurfaceFile result;
+    RawSurface raw = read_checked(path, "triangles", result.format);
+    const std::string file = path.string();
     make_triangles(file, std::move(raw), result);
     if (result.soup.triangles.empty()) {
         throw FileError("{}: found no triangles{}; a surface has at least one", file,
                         result.n_degenerate == 0 ? "" : " but such with a point twice");
     }
     return result;
+}
+
+RawSurface read_polygons(const std::filesystem::path& path) {
+    std::string format;
+    RawSurface raw = read_checked(path, "polygons", format);
+    if (raw.n_polygons() == 0) {
+        throw FileError("{}: found no polygons; a surface has at least one", path.string());
+    }
+    return raw;
 }
 
 meshing::TriangleSoup read_surface(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "io/raw_surface.h"
 #include "meshing/surface/surface_mesh.h"
 
 namespace couture::io {
@@ -41,6 +42,12 @@ struct SurfaceFile {
 ///                    exist, another number of things than it says, polygons of too many corners or
 ///                    no triangles
 [[nodiscard]] SurfaceFile read_surface_file(const std::filesystem::path& path);
+
+/// Points and polygons of a surface file as they are: nothing is merged, split or dropped, numbers
+/// are those of the file. In STL no two triangles share a point.
+///
+/// @throws FileError  as read_surface_file, and for no polygons
+[[nodiscard]] RawSurface read_polygons(const std::filesystem::path& path);
 
 /// Only the triangles of `read_surface_file`.
 [[nodiscard]] meshing::TriangleSoup read_surface(const std::filesystem::path& path);

@@ -164,4 +164,30 @@ void write_vtp(const std::filesystem::path& path, const meshing::QuadMesh& quads
     write_polydata(path, *data, provenance);
 }
 
+void write_vtp(const std::filesystem::path& path, const RawSurface& polygons,
+               std::span<const SurfaceArray> on_points, const std::string& provenance) {
+    const auto n_points = static_cast<vtkIdType>(polygons.points.size());
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Vector3& point : polygons.points) points->InsertNextPoint(point.data());
+    vtkNew<vtkCellArray> cells;
+    for (std::size_t i = 0; i < polygons.n_polygons(); ++i) {
+        cells->InsertNextCell(static_cast<int>(polygons.polygon(i).size()));
+        for (const int vertex : polygons.polygon(i)) {
+            if (vertex < 0 || vertex >= n_points) {
+                throw InputError("write_vtp: polygon {} has vertex {}; there are {} points", i,
+                                 vertex, n_points);
+            }
+            cells->InsertCellPoint(vertex);
+        }
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    for (const SurfaceArray& array : on_points) {
+        add_array(*data->GetPointData(), array, n_points, 0, 0, "points");
+    }
+    write_polydata(path, *data, provenance);
+}
+
 }  // namespace couture::io

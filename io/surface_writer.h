@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "iga/core/types.h"
+#include "io/raw_surface.h"
 #include "meshing/surface/quad_grid.h"
 #include "meshing/surface/surface_mesh.h"
 
@@ -44,5 +45,9 @@ void write_vtp(const std::filesystem::path& path, const meshing::TriangleSoup& s
 /// The same for a quad mesh.
 void write_vtp(const std::filesystem::path& path, const meshing::QuadMesh& quads,
                const std::string& provenance = "");
+
+/// The same for polygons, with values at their points.
+void write_vtp(const std::filesystem::path& path, const RawSurface& polygons,
+               std::span<const SurfaceArray> on_points, const std::string& provenance = "");
 
 }  // namespace couture::io

@@ -157,6 +157,17 @@ MatrixX random_design(int n_parameters, int n_points, std::uint64_t seed) {
     return MatrixX::NullaryExpr(n_points, n_parameters, [&] { return uniform(random); });
 }
 
+MatrixX normal_design(int n_parameters, int n_points, std::uint64_t seed) {
+    check("normal_design", n_parameters, n_points);
+    const MatrixX uniform = random_design(2, n_parameters * n_points, seed);
+    MatrixX values(n_points, n_parameters);
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+        values.data()[i] = std::sqrt(-2.0 * std::log1p(-uniform(i, 0))) *
+                           std::cos(2.0 * std::numbers::pi * uniform(i, 1));
+    }
+    return values;
+}
+
 MatrixX sobol_design(int n_parameters, int n_points) {
     check("sobol_design", n_parameters, n_points);
     boost::random::sobol sequence(static_cast<std::size_t>(n_parameters));

@@ -26,6 +26,10 @@ namespace couture::rom {
 /// Independent uniform points.
 [[nodiscard]] MatrixX random_design(int n_parameters, int n_points, std::uint64_t seed);
 
+/// Independent points of the standard normal distribution, which are not in the unit cube: uniform
+/// ones by the transform of [BoxMuller58].
+[[nodiscard]] MatrixX normal_design(int n_parameters, int n_points, std::uint64_t seed);
+
 /// Points of the Sobol sequence, without the origin.
 [[nodiscard]] MatrixX sobol_design(int n_parameters, int n_points);
 

@@ -34,25 +34,14 @@ Svd svd_of_r(const MatrixX& columns) {
     return {qr.householderQ() * U, svd.singularValues()};
 }
 
-/// Standard normal values by the Box-Muller transform of uniform ones.
-MatrixX normal_matrix(Eigen::Index n, Eigen::Index m, std::uint64_t seed) {
-    const MatrixX uniform = random_design(2, static_cast<int>(n * m), seed);
-    constexpr double turn = 6.283185307179586;
-    MatrixX values(n, m);
-    for (Eigen::Index i = 0; i < n * m; ++i) {
-        values.data()[i] =
-            std::sqrt(-2.0 * std::log1p(-uniform(i, 0))) * std::cos(turn * uniform(i, 1));
-    }
-    return values;
-}
-
 /// Leading singular vectors, from the range of random combinations of the columns.
 Svd randomised_svd(const MatrixX& columns, int n_modes, std::uint64_t seed) {
     constexpr int oversampling = 20;
     constexpr int n_power_steps = 2;
     const Eigen::Index n =
         std::min<Eigen::Index>(n_modes + oversampling, std::min(columns.rows(), columns.cols()));
-    MatrixX Q = orthonormal(columns * normal_matrix(columns.cols(), n, seed));
+    MatrixX Q = orthonormal(
+        columns * normal_design(static_cast<int>(n), static_cast<int>(columns.cols()), seed));
     for (int step = 0; step < n_power_steps; ++step) {
         Q = orthonormal(columns * orthonormal(columns.transpose() * Q));
     }

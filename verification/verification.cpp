@@ -16,6 +16,7 @@
 #include "verification/benchmarks/remeshing.h"
 #include "verification/benchmarks/shells.h"
 #include "verification/geometry/known_shapes.h"
+#include "verification/geometry/shapes.h"
 #include "verification/manufactured/convergence.h"
 #include "verification/manufactured/patch_tests.h"
 
@@ -34,9 +35,9 @@ std::string lower(std::string text) {
 std::vector<Case> all_cases() {
     std::vector<Case> cases;
     for (std::vector<Case> (*group)() :
-         {known_shape_cases, patch_test_cases, convergence_cases, lame_cases, kirsch_cases,
-          nafems_cases, cook_cases, shell_cases, beam_cases, hyperelastic_cases, remeshing_cases,
-          calculix_cases}) {
+         {known_shape_cases, shape_cases, patch_test_cases, convergence_cases, lame_cases,
+          kirsch_cases, nafems_cases, cook_cases, shell_cases, beam_cases, hyperelastic_cases,
+          remeshing_cases, calculix_cases}) {
         const std::vector<Case> more = group();
         cases.insert(cases.end(), more.begin(), more.end());
     }

@@ -146,6 +146,44 @@ struct VerifyOptions {
     bool with_long = false;
 };
 
+struct ShapeOptions {
+    /// Files of members, or one folder or deck of a family.
+    std::vector<std::string> inputs;
+    /// Name of the member where the population stands; empty: the family's, or the nearest to the
+    /// mean.
+    std::string reference;
+    /// Nothing: as many as leave less than a tenth of the population's norm.
+    std::optional<int> n_modes;
+    bool no_align = false;
+    bool scale = false;
+    /// Files of shapes that are projected.
+    std::vector<std::string> project;
+    /// "c1,c2,...", in standard deviations.
+    std::vector<std::string> virtual_members;
+    /// Empty: out/shape, or out/<family>_shape, below the working folder.
+    std::filesystem::path out;
+    bool png = false;
+};
+
+struct ShapeInflateOptions {
+    /// A surface file.
+    std::string surface;
+    /// "X,Y,Z"; empty: found.
+    std::string center;
+    std::optional<double> radius;
+    std::optional<double> strain_limit;
+    std::optional<double> outlet_strain_limit;
+    /// "X,Y,Z,RADIUS,LIMIT"
+    std::vector<std::string> balls;
+    /// "X0,Y0,Z0,X1,Y1,Z1,LIMIT"
+    std::vector<std::string> boxes;
+    std::optional<double> hole_size;
+    std::optional<int> n_divisions;
+    /// Empty: out/<name> below the working folder.
+    std::filesystem::path out;
+    bool png = false;
+};
+
 /// Each returns the exit code and throws what is wrong.
 int run_solve(const SolveOptions& options, const CommonOptions& common);
 int run_check(const SolveOptions& options, const CommonOptions& common);
@@ -161,6 +199,8 @@ int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
+int run_shape(const ShapeOptions& options, const CommonOptions& common);
+int run_shape_inflate(const ShapeInflateOptions& options, const CommonOptions& common);
 int run_compare(const CompareOptions& options, const CommonOptions& common);
 
 }  // namespace couture::drivers

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "iga/core/error.h"
+#include "meshing/surface/ball_contact.h"
 
 namespace couture::meshing {
 
@@ -19,6 +20,27 @@ double squared_distance(const Vector3& point, const Vector3& low, const Vector3&
 double nearest_fraction(const Vector3& point, const Vector3& a, const Vector3& b) {
     const double length = (b - a).squaredNorm();
     return length > 0.0 ? std::clamp((point - a).dot(b - a) / length, 0.0, 1.0) : 0.0;
+}
+
+// How far along a line a box begins that is larger by the radius on all sides; infinity if the line
+// misses it.
+double box_distance(const Vector3& start, const Vector3& direction, double radius,
+                    const Vector3& low, const Vector3& high) {
+    double begin = 0.0;
+    double end = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double to_low = low[axis] - radius - start[axis];
+        const double to_high = high[axis] + radius - start[axis];
+        if (direction[axis] == 0.0) {
+            if (to_low > 0.0 || to_high < 0.0) return std::numeric_limits<double>::infinity();
+            continue;
+        }
+        const double a = to_low / direction[axis];
+        const double b = to_high / direction[axis];
+        begin = std::max(begin, std::min(a, b));
+        end = std::min(end, std::max(a, b));
+    }
+    return begin <= end ? begin : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -122,6 +144,36 @@ NearestPlace TriangleTree::nearest(const Vector3& point) const {
     best.squared_distance = std::numeric_limits<double>::infinity();
     search(0, point, best);
     return best;
+}
+
+std::optional<double> TriangleTree::first_contact(const Vector3& start, const Vector3& direction,
+                                                  double radius) const {
+    // Boxes end at the triangles: lines in their sides must not miss them by rounding.
+    constexpr double rounding = 1e-12;
+    const double size = boxes_[0].low.cwiseAbs().cwiseMax(boxes_[0].high.cwiseAbs()).maxCoeff();
+    const double margin = radius + rounding * size;
+    double first = std::numeric_limits<double>::infinity();
+    std::vector<int> open{0};
+    while (!open.empty()) {
+        const Box& box = boxes_[open.back()];
+        open.pop_back();
+        if (box_distance(start, direction, margin, box.low, box.high) >= first) continue;
+        if (box.left < 0) {
+            for (int i = box.begin; i < box.end; ++i) {
+                const auto distance = ball_contact(start, direction, radius, triangles_[order_[i]]);
+                if (distance) first = std::min(first, *distance);
+            }
+            continue;
+        }
+        const auto distance_of = [&](int below) {
+            return box_distance(start, direction, margin, boxes_[below].low, boxes_[below].high);
+        };
+        const bool is_left_nearer = distance_of(box.left) <= distance_of(box.right);
+        open.push_back(is_left_nearer ? box.right : box.left);
+        open.push_back(is_left_nearer ? box.left : box.right);
+    }
+    if (first == std::numeric_limits<double>::infinity()) return {};
+    return first;
 }
 
 }  // namespace couture::meshing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "iga/core/types.h"
@@ -22,14 +23,21 @@ struct NearestPlace {
 /// Source: [Ericson05] 5.1.5.
 [[nodiscard]] Vector3 nearest_weights(const Vector3& point, const std::array<Vector3, 3>& triangle);
 
-/// A tree of boxes over triangles in space that answers which place is nearest to a point. Of
-/// equally near triangles that with the smaller number is taken.
+/// A tree of boxes over triangles in space that answers which place is nearest to a point, and what
+/// a moving ball meets. Of equally near triangles that with the smaller number is taken.
 class TriangleTree {
   public:
     /// @throws InputError  if there are none
     explicit TriangleTree(std::vector<std::array<Vector3, 3>> triangles);
 
+    /// Its lowest and its highest corner.
+    [[nodiscard]] std::array<Vector3, 2> box() const { return {boxes_[0].low, boxes_[0].high}; }
     [[nodiscard]] NearestPlace nearest(const Vector3& point) const;
+    /// How far the centre of a ball moves along a line until the ball touches a triangle (see
+    /// ball_contact); nothing if it never does.
+    [[nodiscard]] std::optional<double> first_contact(const Vector3& start,
+                                                      const Vector3& direction,
+                                                      double radius) const;
 
   private:
     struct Box {

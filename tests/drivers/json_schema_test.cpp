@@ -132,6 +132,47 @@ TEST_CASE("schema: the JSON of a family has the keys and types that are document
     check_schema(found, "mesh_family_schema.md");
 }
 
+TEST_CASE("schema: the JSON of shape has the keys and types that are documented", "[drivers]") {
+    const tests::TemporaryFolder folder;
+    for (const int k : {100, 110, 130, 150}) {
+        const std::string length = std::to_string(k);
+        const auto result =
+            tests::run_couture("mesh cube --set length=" + length +
+                                   " --stage volume --element-size 60 --out " + length,
+                               folder.path());
+        REQUIRE(result.exit_code == 0);
+    }
+    const bool has_volumes = GENERATE(true, false);
+    const auto result = tests::run_couture(
+        has_volumes ? "shape 100/cube_volume.xml 110/cube_volume.xml 130/cube_volume.xml --virtual "
+                      "0.5 --project 150/cube_volume.xml --json"
+                    : "shape 100/cube_volume.xml 110/cube_volume.xml --json",
+        folder.path());
+    CAPTURE(result.errors);
+    REQUIRE(result.exit_code == 0);
+    std::map<std::string, Json> found;
+    collect(Json::parse(result.output), "", found);
+    CHECK(found.count("projections[].nearest[].name") == (has_volumes ? 1 : 0));
+    CHECK(found.count("generalisation.values") == (has_volumes ? 1 : 0));
+    check_schema(found, "shape_schema.md");
+}
+
+TEST_CASE("schema: the JSON of shape inflate has the keys and types that are documented",
+          "[drivers]") {
+    const tests::TemporaryFolder folder;
+    REQUIRE(tests::run_couture("convert cube --edge-length 20 c.ply", folder.path()).exit_code ==
+            0);
+    const std::string options =
+        GENERATE("", " --outlet-strain-limit 2 --hole-size 1 --ball 0,0,0,5,2");
+    const auto result = tests::run_couture("shape inflate c.ply --json" + options, folder.path());
+    CAPTURE(result.errors);
+    REQUIRE(result.exit_code == 0);
+    std::map<std::string, Json> found;
+    collect(Json::parse(result.output), "", found);
+    CHECK(found.count("hole_size") == (options.empty() ? 0 : 1));
+    check_schema(found, "shape_inflate_schema.md");
+}
+
 TEST_CASE("schema: the JSON of reduced models has the keys and types that are documented",
           "[drivers]") {
     const tests::TemporaryFolder folder;

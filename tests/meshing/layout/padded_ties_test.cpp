@@ -24,7 +24,7 @@ std::vector<LayoutTie> ties_along(const std::vector<std::array<int, 2>>& arcs) {
         ties.push_back({.vertices = {},
                         .nodes = {from, to},
                         .is_feature = true,
-                        .is_reflex = false,
+                        .is_blunt = false,
                         .name = fmt::format("edge {}-{}", from, to)});
     }
     return ties;
