@@ -53,6 +53,8 @@ ordered_json to_json(const MemberResult& result) {
         object["min_scaled_jacobian"] = result.min_scaled_jacobian;
         object["mean_scaled_jacobian"] = result.mean_scaled_jacobian;
         object["max_distance"] = result.max_distance;
+        object["hausdorff"] = result.hausdorff;
+        object["hausdorff_features"] = result.hausdorff_features;
     }
     if (result.homology) object["homology"] = to_json(*result.homology);
     if (!result.to_reference.empty()) {
@@ -72,6 +74,8 @@ MemberResult read_result(const ordered_json& object) {
     result.min_scaled_jacobian = object.at("min_scaled_jacobian");
     result.mean_scaled_jacobian = object.at("mean_scaled_jacobian");
     result.max_distance = object.at("max_distance");
+    result.hausdorff = object.at("hausdorff");
+    result.hausdorff_features = object.at("hausdorff_features");
     if (object.contains("homology")) result.homology = read_homology(object["homology"]);
     result.to_reference = object.value("midpoint_with_reference", "");
     result.to_previous = object.value("midpoint_with_previous", "");
@@ -84,8 +88,9 @@ void print_member(const MemberResult& result) {
                    result.failure);
         return;
     }
-    fmt::print("{:<20} {:7.2f}  {}  {:.3f} {:.3f}", result.member.name, result.seconds,
-               result.signature, result.min_scaled_jacobian, result.mean_scaled_jacobian);
+    fmt::print("{:<20} {:7.2f}  {}  {:.3f} {:.3f}  {:.1e}", result.member.name, result.seconds,
+               result.signature, result.min_scaled_jacobian, result.mean_scaled_jacobian,
+               result.hausdorff);
     if (result.homology) {
         fmt::print("  {:.1e} {:.1e}", result.homology->max_corner_distance,
                    result.homology->max_curve_distance);
@@ -132,8 +137,8 @@ std::string family_json(const FamilySummary& summary) {
 
 void print_family(const FamilySummary& summary, const fs::path& folder) {
     fmt::print(
-        "{:<20} {:>7}  {:<16}  scaled Jacobian from, mean; homology (corners, curves, of "
-        "the diagonal); midpoints with the reference, the one before\n",
+        "{:<20} {:>7}  {:<16}  scaled Jacobian from, mean; distance from the surface, homology "
+        "(corners, curves; all of the diagonal); midpoints with the reference, the one before\n",
         "member", "s", "signature");
     for (const MemberResult& result : summary.results) print_member(result);
     fmt::print("{} of {} members done, midpoints of {} not certified\n",

@@ -17,12 +17,15 @@ struct MemberResult {
     /// Why it failed; empty if it did not.
     std::string failure;
     double seconds = 0.0;
-    /// Of its volume; the next four only if there is one.
+    /// Of its volume; the next six only if there is one.
     std::string signature;
     std::string certificate;
     double min_scaled_jacobian = 0.0;
     double mean_scaled_jacobian = 0.0;
     double max_distance = 0.0;
+    /// See meshing::VolumeDistance.
+    double hausdorff = 0.0;
+    double hausdorff_features = 0.0;
     /// Of parts.
     std::optional<meshing::HomologyReport> homology;
     /// Certificates half way to the reference, and to the member before that is done.

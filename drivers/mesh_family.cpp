@@ -220,6 +220,8 @@ class Family {
         result.min_scaled_jacobian = report.quality.min_scaled_jacobian;
         result.mean_scaled_jacobian = report.quality.mean_scaled_jacobian;
         result.max_distance = report.max_distance;
+        result.hausdorff = meshed.stages.solid->distance->surface;
+        result.hausdorff_features = meshed.stages.solid->distance->features;
         if (const std::string expected = iga::signature(reference_); result.signature != expected) {
             result.failure =
                 fmt::format("not isotopological: its signature is {}, that of the reference {}",

@@ -263,6 +263,7 @@ LayoutRecord read_layout(const Node& node) {
         record.starts[start["curve"].count_below(largest_number)] = start["place"].vector();
     }
     record.elements = node["elements"].counts_below(largest_number);
+    record.base_elements = node["base_elements"].counts_below(largest_number);
     for (const auto& [name, sides] : node["sets"].entries()) {
         auto& set = record.sets[name];
         for (const Node& side : sides.items()) {
@@ -329,11 +330,9 @@ ordered_json to_json(const LayoutRecord& record) {
             set.push_back({{"cuboid", side.cuboid}, {"side", side.side}});
         }
     }
-    return {{"patches", std::move(patches)},
-            {"rotations", std::move(rotations)},
-            {"starts", std::move(starts)},
-            {"elements", record.elements},
-            {"sets", std::move(sets)}};
+    return {{"patches", std::move(patches)},         {"rotations", std::move(rotations)},
+            {"starts", std::move(starts)},           {"elements", record.elements},
+            {"base_elements", record.base_elements}, {"sets", std::move(sets)}};
 }
 
 ordered_json to_json(const PantsRecord& record, const char* format, const std::string& provenance) {

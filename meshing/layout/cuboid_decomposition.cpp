@@ -277,6 +277,7 @@ CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& fe
     repeat_sets(record, result.sides, result.volume);
     result.record = record_layout(opened, patches, choice);
     result.record.elements = record.elements;
+    result.record.base_elements = record.base_elements;
     result.record.sets = record.sets;
     return result;
 }

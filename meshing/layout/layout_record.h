@@ -29,6 +29,9 @@ struct LayoutRecord {
     std::map<int, Vector3> starts;
     /// Of each sheet of cuboids, in the order of LayoutCells::sheets; empty until they are chosen.
     std::vector<int> elements;
+    /// The same before a tolerance asked for more: these divide elements of the wanted shape, so
+    /// that the others stay where they are. Empty: as `elements`.
+    std::vector<int> base_elements;
     /// Of the volumetric layout.
     std::map<std::string, std::vector<CuboidSide>> sets;
 };

@@ -69,10 +69,12 @@ std::vector<CellCorner> cell_corners(const EmbeddedLayout& embedding, const Samp
 /// The energy of the grid's cells.
 class CellEnergy {
   public:
-    CellEnergy(const EmbeddedLayout& embedding, const SampleGrid& grid, const SurfaceSlide& slide,
-               const std::vector<double>& cell_lengths)
-        : corners_(cell_corners(embedding, grid, cell_lengths)),
+    CellEnergy(const SurfaceMesh& mesh, const EmbeddedLayout& embedding, const SampleGrid& grid,
+               const SurfaceSlide& slide, const NodeRelocationOptions& options)
+        : corners_(cell_corners(embedding, grid, options.cell_lengths)),
+          area_part_(options.area_part),
           unknowns_(grid.n_points, {-1, -1}) {
+        for (const FaceHandle face : mesh.faces()) area_ += face_area(mesh, face);
         for (int i = 0; i < grid.n_points; ++i) {
             for (int k = 0; k < slide.n_directions(i); ++k) unknowns_[i][k] = n_unknowns_++;
         }
@@ -98,9 +100,10 @@ class CellEnergy {
     [[nodiscard]] double value(const SurfaceSlide::State& state) const {
         double sum = 0.0;
         for (const CellCorner& corner : corners_) {
-            sum += symmetric_dirichlet(gradient(state, corner));
+            const Matrix<2> F = gradient(state, corner);
+            sum += weight(corner, F.determinant()) * symmetric_dirichlet(F);
         }
-        return sum / static_cast<double>(corners_.size());
+        return sum;
     }
 
     /// Makes the size of cells that with the least energy.
@@ -110,8 +113,9 @@ class CellEnergy {
         for (const CellCorner& corner : corners_) {
             const Matrix<2> F = gradient(state, corner);
             const double det = F.determinant();
-            squares += F.squaredNorm();
-            inverse_squares += F.squaredNorm() / (det * det);
+            const double weighted = weight(corner, det) * F.squaredNorm();
+            squares += weighted;
+            inverse_squares += weighted / (det * det);
         }
         cell_size_ *= std::pow(squares / inverse_squares, 0.25);
     }
@@ -121,7 +125,8 @@ class CellEnergy {
                   NewtonSystem& system) const {
         system.set_zero();
         for (std::size_t c = 0; c < corners_.size(); ++c) {
-            const SymmetricDirichlet term(gradient(state, corners_[c]));
+            const SymmetricDirichlet term(gradient(state, corners_[c]), cell_weight(),
+                                          area_weight(corners_[c]));
             add(state, static_cast<int>(c), is_free, term.gradient, term.modes, term.eigenvalues,
                 system);
         }
@@ -160,10 +165,11 @@ class CellEnergy {
             Matrix<2> cofactor;
             cofactor << F(1, 1), -F(1, 0), -F(0, 1), F(0, 0);
             const double inverse_square = 1.0 / (chi * chi);
-            const double squares = F.squaredNorm();
+            const double n = static_cast<double>(corners_.size());
+            const double squares = F.squaredNorm() / n;
             std::array<Matrix<2>, 5> modes;
             std::array<double, 5> eigenvalues;
-            eigenvalues.fill(2.0 * (1.0 + inverse_square));
+            eigenvalues.fill(2.0 * (1.0 + inverse_square) / n);
             for (int m = 0; m < 4; ++m) {
                 modes[m].setZero();
                 modes[m](m / 2, m % 2) = 1.0;
@@ -171,7 +177,7 @@ class CellEnergy {
             modes[4] = cofactor;
             eigenvalues[4] = 6.0 * squares * slope * slope * inverse_square * inverse_square;
             add(state, static_cast<int>(c), is_free,
-                2.0 * (1.0 + inverse_square) * F -
+                2.0 * (1.0 + inverse_square) / n * F -
                     (2.0 * squares * slope * inverse_square / chi) * cofactor,
                 modes, eigenvalues, system);
         }
@@ -237,6 +243,20 @@ class CellEnergy {
     }
 
   private:
+    /// Of a corner in the energy: for it being one of all, and for its share of the area.
+    [[nodiscard]] double weight(const CellCorner& corner, double det) const {
+        return cell_weight() + area_weight(corner) * det;
+    }
+    [[nodiscard]] double cell_weight() const {
+        return (1.0 - area_part_) / static_cast<double>(corners_.size());
+    }
+    /// For each unit of the determinant.
+    [[nodiscard]] double area_weight(const CellCorner& corner) const {
+        constexpr double n_corners_of_cell = 4.0;
+        return area_part_ * cell_size_ * cell_size_ * corner.lengths.prod() /
+               (n_corners_of_cell * area_);
+    }
+
     /// chi and its derivative.
     [[nodiscard]] static std::pair<double, double> regularised(double det, double width) {
         const double root = std::sqrt(det * det + width * width);
@@ -252,7 +272,6 @@ class CellEnergy {
              const Matrix<2>& of_F, const std::array<Matrix<2>, n>& modes,
              const std::array<double, n>& eigenvalues, NewtonSystem& system) const {
         const CellCorner& corner = corners_[c];
-        const double weight = 1.0 / static_cast<double>(corners_.size());
         const Matrix<3, 2> plane = tangent_plane(state, corner);
         const Matrix<3, 2> edges = scaled_edges(corner);
         Vector<6> free;
@@ -266,12 +285,13 @@ class CellEnergy {
             }
             return Vector<6>(free.cwiseProduct(row));
         };
-        Matrix<6> hessian = weight * (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
+        Matrix<6> hessian = (Vector<6>::Ones() - free).asDiagonal().toDenseMatrix();
+        hessian /= static_cast<double>(corners_.size());
         for (std::size_t m = 0; m < n; ++m) {
             const Vector<6> row = pulled_back(modes[m]);
-            hessian.noalias() += (weight * eigenvalues[m]) * row * row.transpose();
+            hessian.noalias() += eigenvalues[m] * row * row.transpose();
         }
-        system.add(c, weight * pulled_back(of_F), hessian);
+        system.add(c, pulled_back(of_F), hessian);
     }
 
     [[nodiscard]] Matrix<3, 2> scaled_edges(const CellCorner& corner) const {
@@ -304,8 +324,10 @@ class CellEnergy {
     }
 
     std::vector<CellCorner> corners_;
+    double area_part_;
     std::vector<std::array<int, 2>> unknowns_;
     int n_unknowns_ = 0;
+    double area_ = 0.0;
     double cell_size_ = 1.0;
 };
 
@@ -458,9 +480,13 @@ RelocatedSamples relocate_nodes(const SurfaceMesh& mesh, const EmbeddedLayout& e
         throw InputError("relocate_nodes: {} lengths of cells for {} arcs; give none or all",
                          n_lengths, embedding.layout.n_arcs());
     }
+    if (!(options.area_part >= 0.0 && options.area_part <= 1.0)) {
+        throw InputError("relocate_nodes: area_part = {}; it must lie in [0, 1]",
+                         options.area_part);
+    }
     const SampleGrid grid = make_sample_grid(embedding.layout, samples.n_cells);
     const SurfaceSlide slide(mesh, embedding, grid);
-    CellEnergy energy(embedding, grid, slide, options.cell_lengths);
+    CellEnergy energy(mesh, embedding, grid, slide, options);
     NewtonSystem system = energy.make_system();
     SurfaceSlide::State state = slide.placed(to_points(samples, grid));
     const MatrixX start = state.points;
@@ -508,6 +534,32 @@ LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embe
     }
     const SurfaceSlide slide(mesh, embedding, grid);
     return to_samples(embedding, std::move(cells), grid, slide.placed(points).points);
+}
+
+LayoutSamples coarsen_samples(const LayoutSamples& samples, int n) {
+    LayoutSamples result = samples;
+    for (std::size_t a = 0; a < samples.arcs.size(); ++a) {
+        int& n_cells = result.n_cells[a];
+        if (n < 1 || n_cells % n != 0) {
+            throw InputError(
+                "coarsen_samples: {} cells along arc {}, {} of them to be joined; the second "
+                "number must be positive and divide the first",
+                n_cells, a, n);
+        }
+        n_cells /= n;
+        result.arcs[a] = samples.arcs[a](Eigen::all, Eigen::seqN(0, n_cells + 1, n)).eval();
+    }
+    for (int q = 0; q < samples.layout.n_quads(); ++q) {
+        const auto& sides = samples.layout.sides(q);
+        const int n_s = result.n_cells[sides[0].arc];
+        const int n_t = result.n_cells[sides[1].arc];
+        std::vector<int> places;
+        for (int j = 0; j <= n_t; ++j) {
+            for (int i = 0; i <= n_s; ++i) places.push_back(n * (j * (n * n_s + 1) + i));
+        }
+        result.quads[q] = samples.quads[q](Eigen::all, places).eval();
+    }
+    return result;
 }
 
 }  // namespace couture::meshing

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <tuple>
 
 #include "iga/core/error.h"
 #include "meshing/parameterization/map_samples.h"
@@ -83,6 +85,21 @@ std::vector<int> cells_of_surface(const QuadLayout& layout, const LayoutCells& c
     return of_arcs;
 }
 
+// Wanted lengths of cells, next to each other, of the surface's sheets; none if all are the same.
+std::vector<double> wanted_lengths(const CuboidDecomposition& cuboids, const LayoutCells& cells) {
+    const auto& [elements, base] = std::tie(cuboids.record.elements, cuboids.record.base_elements);
+    if (base.size() != elements.size()) return {};
+    const QuadLayout& layout = cuboids.surface.layout;
+    const std::vector<int> sheets = layout.sheets();
+    std::vector<double> lengths(1 + std::ranges::max(sheets));
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        const QuadLayout::Arc& arc = layout.arcs()[a];
+        const int sheet = cells.sheets[cells.find_edge(arc.from, arc.to)];
+        lengths[sheets[a]] = static_cast<double>(base[sheet]) / elements[sheet];
+    }
+    return lengths;
+}
+
 // @throws InputError  if there are more elements than can be worked on
 void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements,
                       double element_size) {
@@ -105,6 +122,7 @@ void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements
 void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
                      const SolidMeshOptions& options) {
     cuboids.record.elements = elements_by_size(cuboids, cells, options);
+    cuboids.record.base_elements = cuboids.record.elements;
     check_n_elements(cells, cuboids.record.elements, options.element_size);
     if (!options.faces) return;
     for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
@@ -123,27 +141,58 @@ std::string place_of_worst(const SurfaceMesh& mesh, const LayoutSamples& samples
                        samples.layout.quad_name(worst->quad));
 }
 
-// Nodes in better places.
-void make_quads(SolidMesh& solid, const SolidMeshOptions& options) {
+// Wanted lengths of the cells of each arc, next to each other: of an outside layout those that its
+// arcs have there, else those of the sheets; none if all are the same.
+std::vector<double> cell_lengths_of_arcs(const SolidMesh& solid,
+                                         const std::vector<double>& of_sheets) {
+    const QuadLayout& layout = solid.cuboids.surface.layout;
+    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
+    const std::vector<int> sheets = layout.sheets();
+    std::vector<double> of_arcs;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        if (!lengths.empty()) {
+            of_arcs.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
+        } else if (!of_sheets.empty()) {
+            of_arcs.push_back(of_sheets[sheets[a]]);
+        }
+    }
+    return of_arcs;
+}
+
+// Quads of the map with their nodes in better places. The map turns none over, but large ones may
+// be on a surface that bends: then smaller ones make the start.
+RelocatedSamples relocate(const SolidMesh& solid, const std::vector<double>& cell_lengths,
+                          const SolidMeshOptions& options) {
     const SurfaceMesh& mesh = solid.cuboids.mesh;
     const EmbeddedLayout& surface = solid.cuboids.surface;
     NodeRelocationOptions relocation;
+    relocation.cell_lengths = cell_lengths_of_arcs(solid, cell_lengths);
     relocation.max_iterations = options.max_relocations;
-    const std::vector<double>& lengths = solid.cuboids.arc_lengths;
-    for (std::size_t a = 0; a < lengths.size(); ++a) {
-        relocation.cell_lengths.push_back(lengths[a] / solid.mapped_quads->n_cells[a]);
-    }
+    // Cells of an outside layout have the lengths that they have there, also where these are wide.
+    if (!solid.cuboids.arc_lengths.empty()) relocation.area_part = 0.0;
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
+    for (int n = 2; n <= 4 && relocated.report.n_inverted > 0; n *= 2) {
+        const RelocatedSamples small = relocate_nodes(
+            mesh, surface, sample_layout_map(mesh, surface, *solid.map, n), relocation);
+        if (small.report.n_inverted > 0) continue;
+        relocated = relocate_nodes(mesh, surface, coarsen_samples(small.samples, n), relocation);
+    }
+    return relocated;
+}
+
+void make_quads(SolidMesh& solid, const std::vector<double>& cell_lengths,
+                const SolidMeshOptions& options) {
+    RelocatedSamples relocated = relocate(solid, cell_lengths, options);
     if (relocated.report.n_inverted > 0) {
         throw GeometryError(
             "mesh: {} corners of quads stay turned over on the surface{}: the cuboids are too "
             "distorted there. Look at the stages layout and map; other cuts ([meshing] cycle, "
             "loop) or templates help, other places of a layout's nodes, or smaller elements",
-            relocated.report.n_inverted, place_of_worst(mesh, relocated.samples));
+            relocated.report.n_inverted, place_of_worst(solid.cuboids.mesh, relocated.samples));
     }
     solid.relocation = relocated.report;
     solid.quads = std::move(relocated.samples);
-    solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), mesh);
+    solid.quad_quality = quad_quality(to_quad_mesh(*solid.quads), solid.cuboids.mesh);
 }
 
 LayoutVolumeOptions volume_options(const SolidMesh& solid, const SolidMeshOptions& options) {
@@ -162,61 +211,72 @@ LayoutSurfaces fit_surfaces(const SolidMesh& solid, const SolidMeshOptions& opti
                                 volume_options(solid, options));
 }
 
-LayoutVolume fit_volume(const SolidMesh& solid, const SolidMeshOptions& options,
-                        const ParameterizationOptions& parameterization) {
-    LayoutVolumeOptions volume = volume_options(solid, options);
-    volume.parameterization = parameterization;
-    return make_layout_volume(solid.cuboids.volume, fine_samples(solid, options), volume);
+LayoutVolume fit_volume(const SolidMesh& solid, const SolidMeshOptions& options) {
+    return make_layout_volume(solid.cuboids.volume, fine_samples(solid, options),
+                              volume_options(solid, options));
 }
 
-double mean_edge_length(const SurfaceMesh& mesh) {
-    double sum = 0.0;
-    for (const EdgeHandle edge : mesh.edges()) sum += mesh.calc_edge_length(edge);
-    return sum / static_cast<double>(mesh.n_edges());
-}
-
-// Mean length of the cells along each arc.
-std::vector<double> cell_lengths(const LayoutSamples& quads) {
-    std::vector<double> lengths;
-    for (const MatrixX& arc : quads.arcs) {
-        const auto n = arc.cols() - 1;
-        const double length = (arc.rightCols(n) - arc.leftCols(n)).colwise().norm().sum();
-        lengths.push_back(length / static_cast<double>(n));
+// For each quad the mean edge length of its triangles, taken as equilateral, weighted by their
+// area: the thin ones that arcs cut off count little.
+std::vector<double> triangle_sizes(const SurfaceMesh& mesh, const EmbeddedLayout& surface) {
+    std::vector<double> areas(surface.layout.n_quads(), 0.0);
+    std::vector<double> sizes(areas.size(), 0.0);
+    for (const FaceHandle face : mesh.faces()) {
+        const int quad = surface.quad_of_face[face.idx()];
+        const double area = face_area(mesh, face);
+        areas[quad] += area;
+        sizes[quad] += area * std::sqrt(4.0 / std::numbers::sqrt3 * area);
     }
-    return lengths;
+    for (std::size_t q = 0; q < sizes.size(); ++q) sizes[q] /= areas[q];
+    return sizes;
+}
+
+// Lengths of a quad's cell along sides 0 and 1: means of its two edges each.
+std::array<double, 2> cell_lengths(const LayoutSamples& samples, int quad,
+                                   const std::array<int, 2>& cell) {
+    const int n_s = samples.n_cells[samples.layout.sides(quad)[0].arc];
+    const MatrixX& points = samples.quads[quad];
+    const int at = cell[1] * (n_s + 1) + cell[0];
+    const auto length = [&](int a, int b) { return (points.col(a) - points.col(b)).norm(); };
+    return {0.5 * (length(at, at + 1) + length(at + n_s + 1, at + n_s + 2)),
+            0.5 * (length(at, at + n_s + 1) + length(at + 1, at + n_s + 2))};
 }
 
 // More elements in the sheets of quads and sharp arcs whose splines are too far from the surface,
-// as far as the order of the distance asks for, but none shorter than the surface's triangles,
-// whose facets they would follow; false if all are near enough or short. Of a quad's two directions
-// that with the longer cells gets them, or both if neither has cells twice as long.
+// as far as the order of the distance asks for: p + 1, or 1 where elements are so short that they
+// follow the surface's facets, less than two of its triangles or edges; none becomes shorter than
+// half of them. False if all are near enough or short. Of a quad's two directions that in which the
+// cell at the largest distance is longer gets them, or both if it is not twice as long.
 bool add_elements(SolidMesh& solid, const LayoutCells& cells, const SolidMeshOptions& options) {
-    const VolumeDistance distance = volume_distance(
-        fit_volume(solid, options, {.max_rounds = 0, .max_untangling_rounds = 0}).volume,
-        solid.cuboids);
+    const VolumeDistance distance =
+        volume_distance(fit_surfaces(solid, options).surfaces, solid.cuboids);
     const QuadLayout& layout = solid.cuboids.surface.layout;
-    const std::vector<double> lengths = cell_lengths(*solid.quads);
-    const double least_length = mean_edge_length(solid.cuboids.mesh);
+    const std::vector<double> lengths = arc_lengths(solid.cuboids.mesh, solid.cuboids.surface);
+    const std::vector<double> sizes = triangle_sizes(solid.cuboids.mesh, solid.cuboids.surface);
+    constexpr double most_facets = 2.0;
+    constexpr double least_part = 0.5;
     constexpr double most_growth = 2.0;
     std::vector<double> growth(cells.n_sheets(), 1.0);
-    const auto grow = [&](int a, double excess) {
+    const auto grow = [&](int a, double length, double size, double excess) {
         const QuadLayout::Arc& arc = layout.arcs()[a];
-        const double wanted = std::pow(excess, 1.0 / (options.volume.degree + 1));
-        const double possible = lengths[a] / least_length;
+        const int order = length < most_facets * size ? 1 : options.volume.degree + 1;
+        const double wanted = std::pow(excess, 1.0 / order);
+        const double possible = length / (least_part * size);
         double& of_sheet = growth[cells.sheets[cells.find_edge(arc.from, arc.to)]];
         of_sheet = std::max(of_sheet, std::min({wanted, possible, most_growth}));
     };
     for (int q = 0; q < layout.n_quads(); ++q) {
         const auto& sides = layout.sides(q);
-        const std::array<double, 2> along{std::max(lengths[sides[0].arc], lengths[sides[2].arc]),
-                                          std::max(lengths[sides[1].arc], lengths[sides[3].arc])};
+        const auto along = cell_lengths(*solid.quads, q, distance.worst_elements[q]);
         for (int k = 0; k < 4; ++k) {
             if (2.0 * along[k % 2] < along[1 - k % 2]) continue;
-            grow(sides[k].arc, distance.of_quads[q] / options.tolerance);
+            grow(sides[k].arc, along[k % 2], sizes[q], distance.of_quads[q] / options.tolerance);
         }
     }
     for (int a = 0; a < layout.n_arcs(); ++a) {
-        grow(a, distance.of_arcs[a] / (0.5 * options.tolerance));
+        const auto n_edges = static_cast<double>(solid.cuboids.surface.arcs[a].size() - 1);
+        const double length = lengths[a] / solid.quads->n_cells[a];
+        grow(a, length, lengths[a] / n_edges, distance.of_arcs[a] / (0.5 * options.tolerance));
     }
     bool is_any = false;
     for (int sheet = 0; sheet < cells.n_sheets(); ++sheet) {
@@ -267,9 +327,10 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
     if (options.last == SolidStage::field) return solid;
 
     const bool adds_elements = chooses_elements && options.element_size == 0.0;
-    constexpr int max_rounds = 4;
+    constexpr int max_rounds = 8;
     for (int round = 0;; ++round) {
         say(round == 0 ? "mapping the surface" : "mapping the surface with more elements");
+        map_options.cell_lengths = wanted_lengths(solid.cuboids, cells);
         solid.map = make_layout_map(mesh, surface,
                                     cells_of_surface(surface.layout, cells, elements), map_options);
         const int n_flipped = solid.map->report.n_flipped;
@@ -283,7 +344,7 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
                 n_flipped);
         }
         say("moving nodes");
-        make_quads(solid, options);
+        make_quads(solid, map_options.cell_lengths, options);
         if (options.last == SolidStage::quads) return solid;
         if (!adds_elements || round == max_rounds || !add_elements(solid, cells, options)) break;
     }
@@ -294,7 +355,7 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
         return solid;
     }
     say("fitting splines and filling the volume");
-    solid.volume = fit_volume(solid, options, options.volume.parameterization);
+    solid.volume = fit_volume(solid, options);
     solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
     if (options.last == SolidStage::volume) return solid;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "iga/topology/multipatch.h"
@@ -18,6 +19,8 @@ struct VolumeDistance {
     /// The largest of each quad of the layout, and of each of its arcs along sharp edges; 0 for
     /// other arcs.
     std::vector<double> of_quads;
+    /// For each quad the element that has it: its number along the quad's sides 0 and 1.
+    std::vector<std::array<int, 2>> worst_elements;
     std::vector<double> of_arcs;
 };
 
@@ -26,6 +29,12 @@ struct VolumeDistance {
 /// @param volume  patch c is cuboid c of the decomposition
 /// @throws InputError  for less than one part
 [[nodiscard]] VolumeDistance volume_distance(const iga::MultiPatch<3>& volume,
+                                             const CuboidDecomposition& cuboids, int n_samples = 4);
+
+/// The same of splines for its boundary alone.
+///
+/// @param surfaces  in the order of the decomposition's quads (see make_layout_surfaces)
+[[nodiscard]] VolumeDistance volume_distance(const iga::MultiPatch<2>& surfaces,
                                              const CuboidDecomposition& cuboids, int n_samples = 4);
 
 }  // namespace couture::meshing
