@@ -203,6 +203,15 @@ void align_start(const SurfaceMesh& mesh, std::vector<VertexHandle>& vertices,
                 vertices.end());
 }
 
+// Whether tori were cut: one that was not has a patch without boundary.
+bool has_cut_tori(const PantsRecord& record) {
+    for (std::size_t p = 0; p < record.patches.size(); ++p) {
+        const bool is_torus = record.shells[record.shell_of_patch[p]].genus == 1;
+        if (is_torus && record.patches[p].empty()) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 PantsRecord record_pants(const SurfaceMesh& mesh, const PantsDecomposition& pants,
@@ -232,9 +241,7 @@ PantsDecomposition replay_pants(SurfaceMesh& mesh, const PantsRecord& record,
     PantsOptions options;
     options.loop_width = width;
     options.only_given_loops = true;
-    options.cuts_tori = std::any_of(
-        record.curves.begin(), record.curves.end(),
-        [](const PantsRecord::Curve& one) { return one.kind == PantsCurveKind::handle; });
+    options.cuts_tori = has_cut_tori(record);
     options.boundary_names = boundary_names;
     options.boundary_order = match_boundaries(record, mesh, boundary_names, warp);
     for (const auto& curve : record.curves) {

@@ -61,6 +61,18 @@ TEST_CASE("mesh family: members are done, those that fail are reported", "[drive
           io::read_text(folder.path() / "o/a_volume.xml"));
 }
 
+TEST_CASE("mesh family: bodies with one hole are cut as the reference was", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "m.csv", "name,P1,P2\nwide,48,75\nnarrow,22,125\n");
+    io::write_text(folder.path() / "f.toml",
+                   "[geometry]\npart = \"plate\"\n[meshing]\nelement_size = 30\n[family]\n"
+                   "parameters = \"m.csv\"\n");
+    const auto result = run_couture("mesh f.toml", folder.path());
+    CAPTURE(result.errors);
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.output, Contains("3 of 3 members done, midpoints of 0 not certified"));
+}
+
 TEST_CASE("mesh family: files are matched by where they lie", "[drivers]") {
     const TemporaryFolder folder;
     REQUIRE(run_couture("convert cube a.off", folder.path()).exit_code == 0);
