@@ -107,25 +107,6 @@ std::string describe_point(const rom::ParameterSpace& space, const VectorX& poin
     return fmt::format("{}", fmt::join(values, ", "));
 }
 
-MatrixX control_points_of(const iga::Space<3>& member) {
-    MatrixX points(member.n_dofs(), 3);
-    for (int p = 0; p < member.n_patches(); ++p) {
-        points(member.dofs(p), Eigen::all) = member.geometry().patches[p].control_points();
-    }
-    return points;
-}
-
-iga::MultiPatch<3> with_control_points(const iga::Space<3>& reference,
-                                       const MatrixX& control_points) {
-    iga::MultiPatch<3> member = reference.geometry();
-    for (int p = 0; p < member.n_patches(); ++p) {
-        const iga::Patch<3>& patch = member.patches[p];
-        member.patches[p] = iga::Patch<3>(
-            patch.space(), control_points(reference.dofs(p), Eigen::all), patch.weights());
-    }
-    return member;
-}
-
 RomSamples::RomSamples(const std::filesystem::path& path, const std::vector<std::string>& overrides)
     : path_(path),
       overrides_(overrides),
@@ -213,7 +194,7 @@ iga::SpacePtr<3> RomSamples::make_reference(io::SnapshotStore& store) const {
     return space;
 }
 
-iga::SpacePtr<3> RomSamples::make_member(const VectorX& point, const iga::Space<3>& reference,
+iga::SpacePtr<3> RomSamples::make_member(const VectorX& point,
                                          const io::SnapshotStore& store) const {
     const io::Deck deck = deck_at(point);
     iga::MultiPatch<3> geometry;
@@ -226,23 +207,7 @@ iga::SpacePtr<3> RomSamples::make_member(const VectorX& point, const iga::Space<
         geometry = as_volume(std::move(volume), deck);
     }
     auto space = make_space<3>(deck, geometry);
-    const std::string expected = iga::signature(reference.geometry());
-    if (const std::string found = iga::signature(space->geometry()); found != expected) {
-        throw TopologyError("not isotopological: its signature is {}, that of the reference {}",
-                            found, expected);
-    }
     require_valid(space->geometry());
-    for (int p = 0; p < space->n_patches(); ++p) {
-        const VectorX& weights = space->geometry().patches[p].weights();
-        const VectorX& expected_weights = reference.geometry().patches[p].weights();
-        if (weights.size() != expected_weights.size() ||
-            !is_multiple(weights, 1.0, expected_weights)) {
-            throw GeometryError(
-                "the weights of patch {} are not those of the reference: its shape is no sum of "
-                "modes",
-                p);
-        }
-    }
     return space;
 }
 

@@ -44,9 +44,8 @@ class RomSamples {
 
     /// The space of another member.
     ///
-    /// @throws GeometryError, TopologyError  also for a folded member and for one of another
-    ///                                       signature or other weights than the reference
-    [[nodiscard]] iga::SpacePtr<3> make_member(const VectorX& point, const iga::Space<3>& reference,
+    /// @throws GeometryError  also for a folded member
+    [[nodiscard]] iga::SpacePtr<3> make_member(const VectorX& point,
                                                const io::SnapshotStore& store) const;
 
     /// Displacements of a member, 3 n_nodes x n_loads, unknown 3 * node + component: linear
@@ -79,11 +78,5 @@ class RomSamples {
 
 /// "R1 = 11 mm, load = 140 N".
 [[nodiscard]] std::string describe_point(const rom::ParameterSpace& space, const VectorX& point);
-
-/// n_nodes x 3: the control points of a member, shared ones once.
-[[nodiscard]] MatrixX control_points_of(const iga::Space<3>& member);
-/// The member of that reference with these control points.
-[[nodiscard]] iga::MultiPatch<3> with_control_points(const iga::Space<3>& reference,
-                                                     const MatrixX& control_points);
 
 }  // namespace couture::drivers

@@ -6,6 +6,7 @@
 #include "iga/core/log.h"
 #include "iga/core/timer.h"
 #include "iga/solve/static_system.h"
+#include "rom/member_geometry.h"
 
 namespace couture::drivers {
 
@@ -15,7 +16,7 @@ namespace {
 iga::SpacePtr<3> stored_member(const iga::Space<3>& reference, const io::SnapshotStore& store,
                                int i_geometry, const std::string& signature) {
     return std::make_shared<const iga::Space<3>>(
-        with_control_points(reference, store.geometry(i_geometry, signature)));
+        rom::to_member(reference, iga::flatten(store.geometry(i_geometry, signature))));
 }
 
 // False if the geometry is refused.
@@ -26,9 +27,8 @@ bool make_geometry(RomSamples& samples, const iga::Space<3>& reference, io::Snap
     MatrixX control_points;
     std::string failure;
     try {
-        const auto member =
-            samples.make_member(samples.plan().point(i_geometry, 0, 0), reference, store);
-        control_points = control_points_of(*member);
+        const auto member = samples.make_member(samples.plan().point(i_geometry, 0, 0), store);
+        control_points = iga::unflatten(rom::to_field(reference, member->geometry()), 3);
     } catch (const Error& error) {
         failure = error.what();
     }

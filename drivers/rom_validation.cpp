@@ -14,6 +14,7 @@
 #include "iga/solve/static_system.h"
 #include "io/line_plot.h"
 #include "rom/galerkin.h"
+#include "rom/member_geometry.h"
 
 namespace couture::drivers {
 
@@ -302,8 +303,8 @@ std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
                            const VectorX& displacement) {
         deck.path = std::filesystem::path(stem.filename().string() + "_worst_" + name + ".toml");
         deck.title = name;
-        const auto space = std::make_shared<const iga::Space<3>>(
-            with_control_points(*model.space(), iga::unflatten(control_points, 3)));
+        const auto space =
+            std::make_shared<const iga::Space<3>>(rom::to_member(*model.space(), control_points));
         iga::LinearStaticResult<3> result;
         result.cases.emplace_back();
         result.cases.back().displacement = {space, iga::unflatten(displacement, 3)};

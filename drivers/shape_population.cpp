@@ -175,7 +175,8 @@ std::vector<ShapeMember> family_files(const fs::path& folder) {
     }
     std::vector<ShapeMember> members;
     try {
-        for (const auto& member : nlohmann::json::parse(io::read_text(lists[0])).at("members")) {
+        const auto list = nlohmann::json::parse(io::read_text(lists[0]));
+        for (const auto& member : list.at("members")) {
             if (member.at("status") != "done") continue;
             const std::string name = member.at("name");
             members.push_back({name, folder / (name + "_volume.xml"), {}});

@@ -16,6 +16,7 @@
 #include "iga/topology/jacobian_certificate.h"
 #include "rom/field_sampler.h"
 #include "rom/galerkin.h"
+#include "rom/member_geometry.h"
 
 namespace couture::drivers {
 
@@ -64,8 +65,8 @@ std::pair<VectorX, VectorX> solve_in_full(const TrainedModel& trained, const Vec
     RomSamples samples(deck, trained.overrides());
     io::SnapshotStore store(trained.path().parent_path() / "snapshots", samples.job());
     const auto reference = samples.make_reference(store);
-    const auto member = samples.make_member(point, *reference, store);
-    return {iga::flatten(control_points_of(*member)), samples.solve(member, {point}).col(0)};
+    const auto member = samples.make_member(point, store);
+    return {rom::to_field(*reference, member->geometry()), samples.solve(member, {point}).col(0)};
 }
 
 iga::Validity validity_of(const iga::MultiPatch<3>& geometry) {

@@ -168,8 +168,11 @@ RelocatedSamples relocate(const SolidMesh& solid, const std::vector<double>& cel
     NodeRelocationOptions relocation;
     relocation.cell_lengths = cell_lengths_of_arcs(solid, cell_lengths);
     relocation.max_iterations = options.max_relocations;
-    // Cells of an outside layout have the lengths that they have there, also where these are wide.
-    if (!solid.cuboids.arc_lengths.empty()) relocation.area_part = 0.0;
+    // Cells weigh by their area where splines are to come near the surface, not where they have a
+    // size of their own or the lengths that an outside layout gives them.
+    if (options.element_size > 0.0 || !solid.cuboids.arc_lengths.empty()) {
+        relocation.area_part = 0.0;
+    }
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     for (int n = 2; n <= 4 && relocated.report.n_inverted > 0; n *= 2) {
         const RelocatedSamples small = relocate_nodes(

@@ -66,11 +66,11 @@ TEST_CASE("mesh: surfaces of a pipe become volumes and hexahedra", "[drivers]") 
              {"mesh pipe.xml", "--stage must be volume or hexes"},
              {"mesh pipe.xml --stage pants", "not pants"},
              {"mesh pipe.xml --stage volume --points 4", "--points 4 is for --stage hexes"},
-             {"mesh pipe.xml --stage hexes --points 1", "there must be 2 or more"},
+             {"mesh pipe.xml --stage hexes --points 1", "not in range 2 to 1000"},
              {"mesh pipe.xml --stage volume --png", "only --stage, --points and --out"},
              {"mesh out/pipe/pipe_volume.xml --stage volume", "holds volumes"},
              {"mesh plate --points 3", "3 points are for stage hexes"},
-             {"mesh cube --stage hexes --points 1", "hexahedra need 2 or more"}}) {
+             {"mesh cube --stage hexes --points 1", "not in range 2 to 1000"}}) {
         const auto refused = run_couture(arguments, folder.path());
         CAPTURE(arguments);
         CHECK(refused.exit_code == 2);
