@@ -161,6 +161,10 @@ MatrixX SnapshotStore::added_points(int n_parameters) const {
     const fs::path path = file(added_name);
     if (!fs::exists(path)) return MatrixX::Zero(0, n_parameters);
     const auto rows = nlohmann::json::parse(read_text(path), nullptr, false);
+    if (!rows.is_array()) {
+        throw FileError("{}: is no list of points, or was cut; remove it to go on without them",
+                        path.string());
+    }
     MatrixX points(static_cast<Eigen::Index>(rows.size()), n_parameters);
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         const auto& row = rows[i];

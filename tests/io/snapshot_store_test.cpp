@@ -106,3 +106,16 @@ TEST_CASE("snapshot store: the reference keeps its signature", "[io]") {
     CHECK(iga::signature(*found) == iga::signature(part));
     CHECK(found->patches[0].control_points() == part.patches[0].control_points());
 }
+
+TEST_CASE("snapshot store: added points are kept to the last bit", "[io]") {
+    const io::TemporaryFolder folder;
+    io::SnapshotStore store(folder / "store", job);
+    CHECK(store.added_points(2).rows() == 0);
+    const MatrixX points = some_numbers(3, 2);
+    store.write_added_points(points);
+    CHECK(store.added_points(2) == points);
+    CHECK_THROWS_WITH(store.added_points(3), Contains("row 0 does not hold 3 numbers"));
+    const auto file = folder / "store/added_points.json";
+    io::write_text(file, io::read_text(file).substr(0, 20));
+    CHECK_THROWS_WITH(store.added_points(2), Contains("is no list of points, or was cut"));
+}
