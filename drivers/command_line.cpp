@@ -19,6 +19,7 @@ namespace {
 
 constexpr int max_threads = 1024;
 constexpr int most_hex_points = 1000;
+constexpr int most_halvings = 6;
 
 CLI::App* add_command(CLI::App& app, Command& command, const std::string& name,
                       const std::string& what, std::function<int()> run) {
@@ -220,6 +221,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     const auto compare = std::make_shared<CompareOptions>();
     const auto from = std::make_shared<SurfaceInputOptions>();
     const auto to = std::make_shared<std::string>();
+    const auto n_halvings = std::make_shared<int>(0);
     CLI::App app("Couture: isogeometric analysis of solids");
     app.set_version_flag("--version", "couture " COUTURE_VERSION);
     app.require_subcommand(1);
@@ -309,7 +311,9 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
     add_surface_options(sub, *from);
 
     sub = add_command(app, command, "convert", "write a spline or surface file in another format",
-                      [&command, from, to] { return run_convert(*from, *to, command.common); });
+                      [&command, from, to, n_halvings] {
+                          return run_convert(*from, *to, *n_halvings, command.common);
+                      });
     sub->add_option("in", from->surface,
                     "a spline file, a deck (its geometry), a surface file, or the name of a part")
         ->required();
@@ -317,6 +321,10 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                     "the extension decides: .xml, .mesh, .txt, .inp, .h5 for splines, .stl, .obj, "
                     ".off, .ply, .vtp for surfaces")
         ->required();
+    sub->add_option("--refine", *n_halvings,
+                    "times that each element of splines is halved in each direction; the shape "
+                    "stays the same")
+        ->check(CLI::Range(0, most_halvings));
     add_surface_options(sub, *from);
 
     add_rom_commands(app, command);

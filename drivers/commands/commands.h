@@ -196,7 +196,8 @@ int run_check(const SolveOptions& options, const CommonOptions& common);
 int run_mesh(const MeshOptions& options, const CommonOptions& common);
 /// The options' surface may be a spline file here.
 int run_info(const SurfaceInputOptions& options, const CommonOptions& common);
-int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
+/// @param n_halvings  times that each element of a spline file is halved in each direction
+int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to, int n_halvings,
                 const CommonOptions& common);
 int run_rom_train(const RomTrainOptions& options, const CommonOptions& common);
 int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);

@@ -6,6 +6,7 @@
 #include "drivers/job_geometry.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/spline/refine.h"
 #include "io/surface_file.h"
 
 namespace couture::drivers {
@@ -64,23 +65,63 @@ int convert_surface(const SurfaceInputOptions& from, const std::filesystem::path
     return ExitCode::done;
 }
 
+// As many as a file is written with.
+constexpr double most_elements = 2e6;
+
+// Splits every element of every patch into `n_parts` in each direction; maps are unchanged, and
+// patches that conform still do.
+template <int d>
+void split_elements(iga::MultiPatch<d>& multipatch, int n_parts) {
+    double n_elements = 0.0;
+    for (const iga::Patch<d>& patch : multipatch.patches) {
+        double n_of_patch = 1.0;
+        for (const iga::KnotVector& knots : patch.space().knots) {
+            n_of_patch *= static_cast<double>(n_parts) * knots.n_elements();
+        }
+        n_elements += n_of_patch;
+    }
+    if (n_elements > most_elements) {
+        throw InputError(
+            "convert: {:.0f} elements would be written, at most {:.0f} are; refine less often",
+            n_elements, most_elements);
+    }
+    for (iga::Patch<d>& patch : multipatch.patches) {
+        iga::TensorSpace<d> space = patch.space();
+        for (iga::KnotVector& knots : space.knots) {
+            knots = iga::refine(knots, knots.degree(), n_parts * knots.n_elements()).knots;
+        }
+        patch = iga::refine_to<d>(patch, space);
+    }
+}
+
 }  // namespace
 
-int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to,
+int run_convert(const SurfaceInputOptions& from, const std::filesystem::path& to, int n_halvings,
                 const CommonOptions& common) {
     require_file_or_part("convert", from.surface);
     std::error_code none;
     if (std::filesystem::equivalent(from.surface, to, none)) {
         throw InputError("convert: {} would replace its own input; give another name", to.string());
     }
-    if (is_surface_input(from.surface)) return convert_surface(from, to, common);
+    if (is_surface_input(from.surface)) {
+        if (n_halvings > 0) {
+            throw InputError(
+                "convert: {} is a surface of triangles, --refine is for splines; triangles of a "
+                "part have --edge-length",
+                from.surface);
+        }
+        return convert_surface(from, to, common);
+    }
     if (io::is_surface_file(to)) {
         throw InputError(
             "convert: {} is a spline file or deck, {} a surface of triangles; splines can be "
             "written as .xml, .mesh, .txt, .inp or .h5",
             from.surface, to.string());
     }
-    const io::AnyMultiPatch multipatch = read_any(from.surface);
+    io::AnyMultiPatch multipatch = read_any(from.surface);
+    if (n_halvings > 0) {
+        std::visit([&](auto& patches) { split_elements(patches, 1 << n_halvings); }, multipatch);
+    }
     io::write_splines(to, multipatch);
     const int n_patches =
         std::visit([](const auto& patches) { return patches.n_patches(); }, multipatch);

@@ -25,8 +25,10 @@ constexpr double last_regularization = 1e-3;
 constexpr double size_weight = 0.2;
 /// A sample counts as unfolded above this inverse mean ratio.
 constexpr double unfolded = 1e-6;
-/// States that are unfolded at all samples, but not between them, start again with more samples.
+/// States that are unfolded at all samples, but not between them, start again with more samples,
+/// as do those whose scaled Jacobian falls below this part of their minimum between them.
 constexpr int max_attempts = 4;
+constexpr double hidden_part = 0.9;
 /// Boxes are no flatter than this: thin layers may have more even elements.
 constexpr double max_aspect = 20.0;
 
@@ -86,7 +88,7 @@ class Parameterizer {
             unfold(report);
             improve(report);
             const bool has_learnt = choose(report);
-            if (!has_learnt || is_proven(result_->report)) break;
+            if (is_proven(result_->report) ? !see_between_samples() : !has_learnt) break;
             points_ = states_.front().points;
             (void)keep();
         }
@@ -166,10 +168,33 @@ class Parameterizer {
             if (is_proven(result_->report) || best.min_scaled_jacobian <= 0.0 || !has_new_samples) {
                 return has_learnt;
             }
-            for (State& state : states_) {
-                state.min_scaled_jacobian = judge_.summary(state.points).min_scaled_jacobian;
-            }
+            judge_again();
         }
+    }
+
+    void judge_again() {
+        for (State& state : states_) {
+            state.min_scaled_jacobian = judge_.summary(state.points).min_scaled_jacobian;
+        }
+    }
+
+    // Gives more samples to the elements that are worse between theirs than the result is said to
+    // be; whether there are any.
+    bool see_between_samples() {
+        const MatrixX points = points_of(result_->volume, dofs_);
+        double& least = result_->report.min_scaled_jacobian_after;
+        const auto elements = judge_.elements_below(points, hidden_part * least);
+        bool has_new_samples = false;
+        for (std::size_t p = 0; p < elements.size(); ++p) {
+            (void)energy_.sample_densely(static_cast<int>(p), elements[p]);
+            has_new_samples =
+                judge_.sample_densely(static_cast<int>(p), elements[p]) || has_new_samples;
+        }
+        if (!has_new_samples) return false;
+        least = judge_.summary(points).min_scaled_jacobian;
+        judge_again();
+        std::ranges::stable_sort(states_, std::greater{}, &State::min_scaled_jacobian);
+        return true;
     }
 
     static bool is_proven(const ParameterizationReport& report) {

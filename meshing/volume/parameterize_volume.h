@@ -38,7 +38,8 @@ struct ParameterizedVolume {
 /// the states passed the one with the largest minimum of the scaled Jacobian is returned among
 /// those whose certificate is valid; elements of which a certificate proves nothing are sampled
 /// densely from then on, also between the corners of their edges and faces, and if that leaves no
-/// state unfolded it is done again from the best. If none gets valid, the best: see the report.
+/// state unfolded it is done again from the best; so it is where elements of the result are worse
+/// between their samples than at any. If none gets valid, the best: see the report.
 ///
 /// Patches must be right-handed in intent: det J is to become positive. Results do not depend on
 /// the number of threads.

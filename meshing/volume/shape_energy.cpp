@@ -554,6 +554,35 @@ bool ShapeEnergy::sample_densely(int patch, const std::vector<int>& elements) {
     return is_new;
 }
 
+std::vector<std::vector<int>> ShapeEnergy::elements_below(const MatrixX& points,
+                                                          double limit) const {
+    std::vector<char> is_below(n_elements_, 0);
+    for_each(static_cast<int>(chunks_.size()), [&](int i) {
+        const Chunk& chunk = chunks_[i];
+        Element element;
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            const int number = chunk.first_number + e - chunk.first_element;
+            if (is_dense_[number]) continue;
+            element.load(patches_[chunk.patch], e, points, true);
+            element.for_each_sample(singular_corners_[number], [&](int kind, int q) {
+                const double scaled =
+                    element.orientation() * iga::scaled_jacobian<3>(element.jacobian(kind, q));
+                is_below[number] = scaled < limit ? 1 : 0;
+                return is_below[number] == 0;
+            });
+        }
+    });
+    std::vector<std::vector<int>> result(patches_.size());
+    for (const Chunk& chunk : chunks_) {
+        for (int e = chunk.first_element; e < chunk.last_element; ++e) {
+            if (is_below[chunk.first_number + e - chunk.first_element] != 0) {
+                result[chunk.patch].push_back(e);
+            }
+        }
+    }
+    return result;
+}
+
 void ShapeEnergy::set_reference(const MatrixX& points) { reference_volumes_ = volumes(points); }
 
 }  // namespace couture::meshing

@@ -69,6 +69,10 @@ class ShapeEnergy {
     /// @param elements  of the patch, first direction fastest
     /// @return whether one of them was not sampled so before
     bool sample_densely(int patch, const std::vector<int>& elements);
+    /// By patch, the elements without dense samples whose scaled Jacobian falls below `limit`
+    /// at one.
+    [[nodiscard]] std::vector<std::vector<int>> elements_below(const MatrixX& points,
+                                                               double limit) const;
 
   private:
     /// The kinds of samples: each element has a grid of its corners, and Gauss points or a dense

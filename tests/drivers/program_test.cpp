@@ -238,6 +238,25 @@ TEST_CASE("couture convert: a deck's part becomes a file that info reads", "[dri
     CHECK(run_couture("compare bar.xml bar.xml", folder.path()).exit_code == 0);
 }
 
+TEST_CASE("couture convert: --refine halves elements and keeps the shape", "[drivers]") {
+    const TemporaryFolder folder;
+    REQUIRE(run_couture("convert " + bar + " bar.xml", folder.path()).exit_code == 0);
+    REQUIRE(run_couture("convert bar.xml finer.xml --refine 1", folder.path()).exit_code == 0);
+    const auto info_of = [&](const std::string& file) {
+        return Json::parse(run_couture("info --json " + file, folder.path()).output);
+    };
+    const auto coarse = info_of("bar.xml");
+    const auto fine = info_of("finer.xml");
+    CHECK(fine.at("elements") == 8 * coarse.at("elements").get<int>());
+    CHECK(fine.at("volume").get<double>() == Approx(coarse.at("volume").get<double>()));
+    const auto too_many = run_couture("convert finer.xml b.xml --refine 6", folder.path());
+    CHECK(too_many.exit_code == 2);
+    CHECK_THAT(too_many.errors, Catch::Contains("elements would be written"));
+    const auto surface = run_couture("convert wheel wheel.stl --refine 1", folder.path());
+    CHECK(surface.exit_code == 2);
+    CHECK_THAT(surface.errors, Catch::Contains("--edge-length"));
+}
+
 TEST_CASE("couture: an interrupt ends with 130 and leaves no half-written file", "[drivers]") {
     const TemporaryFolder folder;
     const std::string deck = COUTURE_SOURCE_DIR "/drivers/decks/pipe_tee.toml";
