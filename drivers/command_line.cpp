@@ -158,7 +158,8 @@ void add_rom_commands(CLI::App& app, Command& command) {
                     "a parameter: NAME=VALUE (default: the middle of its range)")
         ->allow_extra_args(false);
     sub->add_flag("--galerkin", eval->galerkin,
-                  "also project the full equations onto the modes, and say the residual");
+                  "also project the full equations onto the modes (at finite strain: one step of "
+                  "Newton there), and say the residual");
     sub->add_flag("--solve", eval->solve, "also solve in full, and say the error");
     sub->add_flag("--force", eval->is_forced, "answer also far outside of the training box");
     sub->add_option("--out", eval->out, "write the fields (VTU) into this folder");

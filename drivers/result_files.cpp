@@ -4,6 +4,7 @@
 
 #include "drivers/result_picture.h"
 #include "iga/core/text_hash.h"
+#include "iga/post/finite_stress.h"
 #include "iga/post/stress.h"
 #include "io/atomic_file.h"
 #include "io/vtk_writer.h"
@@ -57,7 +58,45 @@ std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
             {"principal", principal_rows(stress), {"1", "2", "3"}}};
 }
 
+template <int d>
+iga::FiniteStresses<d> finite_stresses(const io::Deck& deck, const iga::Field<d>& displacement) {
+    iga::SteppingState<d> state = iga::make_start<d>(displacement.space);
+    state.displacement = displacement.coefficients;
+    return {deck.problem, state, deck.stepping.n_gauss_points, deck.stepping.volumetric};
+}
+
+template <int d>
+void write_gauss_points(const fs::path& path, const io::Deck& deck,
+                        const iga::CaseResult<d>& load_case, const std::string& origin) {
+    if (deck.is_hyperelastic()) {
+        const auto points = finite_stresses<d>(deck, load_case.displacement).at_gauss_points();
+        const std::vector<io::PointArray> arrays = {
+            {"displacement", points.displacement, {}},
+            {"stress", points.stress, voigt_names()},
+            {"von_mises", von_mises_rows(points.stress), {}}};
+        io::write_points_vtu(path, points.points, arrays, origin, points.cells);
+        return;
+    }
+    const auto points =
+        iga::gauss_point_stresses<d>(deck.problem, load_case.displacement, load_case.name);
+    std::vector<io::PointArray> arrays;
+    if (deck.problem.physics == iga::Physics::poisson) {
+        arrays = {{"flux", points.stresses.leftCols(3), {}}};
+    } else {
+        arrays = {{"stress", points.stresses, voigt_names()},
+                  {"von_mises", von_mises_rows(points.stresses), {}}};
+    }
+    io::write_points_vtu(path, points.points, arrays, origin);
+}
+
 }  // namespace
+
+template <int d>
+MatrixX smooth_stress(const io::Deck& deck, const iga::CaseResult<d>& result) {
+    return deck.is_hyperelastic()
+               ? finite_stresses<d>(deck, result.displacement).project().stress
+               : iga::project_stress<d>(deck.problem, result.displacement, result.name);
+}
 
 template <int d>
 std::string provenance(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
@@ -82,7 +121,8 @@ template <int d>
 std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpacePtr<d>& space,
                                          const iga::LinearStaticResult<d>& result,
                                          const GeometryCertificate& certificate,
-                                         const fs::path& folder) {
+                                         const fs::path& folder,
+                                         const std::optional<MatrixX>& given_stress) {
     std::vector<fs::path> files;
     const std::string origin = provenance<d>(deck, space->geometry(), certificate);
     for (const iga::CaseResult<d>& load_case : result.cases) {
@@ -90,7 +130,7 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
             deck.path.stem().string() + (load_case.name.empty() ? "" : "_" + load_case.name);
         MatrixX stress;
         if (deck.output.vtu || deck.output.png) {
-            stress = iga::project_stress<d>(deck.problem, load_case.displacement, load_case.name);
+            stress = given_stress ? *given_stress : smooth_stress<d>(deck, load_case);
         }
         if (deck.output.vtu) {
             files.push_back(folder / (stem + ".vtu"));
@@ -100,16 +140,7 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
         }
         if (deck.output.gauss_points) {
             files.push_back(folder / (stem + "_gauss.vtu"));
-            const auto points =
-                iga::gauss_point_stresses<d>(deck.problem, load_case.displacement, load_case.name);
-            std::vector<io::PointArray> arrays;
-            if (deck.problem.physics == iga::Physics::poisson) {
-                arrays = {{"flux", points.stresses.leftCols(3), {}}};
-            } else {
-                arrays = {{"stress", points.stresses, voigt_names()},
-                          {"von_mises", von_mises_rows(points.stresses), {}}};
-            }
-            io::write_points_vtu(files.back(), points.points, arrays, origin);
+            write_gauss_points<d>(files.back(), deck, load_case, origin);
         }
         if (deck.output.png) {
             files.push_back(folder / (stem + ".png"));
@@ -123,11 +154,15 @@ template std::string provenance<2>(const io::Deck&, const iga::MultiPatch<2>&,
                                    const GeometryCertificate&);
 template std::string provenance<3>(const io::Deck&, const iga::MultiPatch<3>&,
                                    const GeometryCertificate&);
+template MatrixX smooth_stress<2>(const io::Deck&, const iga::CaseResult<2>&);
+template MatrixX smooth_stress<3>(const io::Deck&, const iga::CaseResult<3>&);
 template std::vector<fs::path> write_result_files<2>(const io::Deck&, const iga::SpacePtr<2>&,
                                                      const iga::LinearStaticResult<2>&,
-                                                     const GeometryCertificate&, const fs::path&);
+                                                     const GeometryCertificate&, const fs::path&,
+                                                     const std::optional<MatrixX>&);
 template std::vector<fs::path> write_result_files<3>(const io::Deck&, const iga::SpacePtr<3>&,
                                                      const iga::LinearStaticResult<3>&,
-                                                     const GeometryCertificate&, const fs::path&);
+                                                     const GeometryCertificate&, const fs::path&,
+                                                     const std::optional<MatrixX>&);
 
 }  // namespace couture::drivers

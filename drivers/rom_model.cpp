@@ -7,6 +7,7 @@
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/text_hash.h"
+#include "rom/galerkin_newton.h"
 
 namespace couture::drivers {
 
@@ -130,6 +131,18 @@ void TrainedModel::check_inside(const VectorX& point, bool is_forced) const {
         }
         log::warn(text);
     }
+}
+
+rom::GalerkinSolution solve_projected(const rom::ReducedModel& model,
+                                      const rom::Evaluation& evaluation, const io::Deck& deck) {
+    const std::optional<int>& n_gauss_points = deck.discretization.n_gauss_points;
+    if (!deck.is_hyperelastic()) {
+        return rom::solve_galerkin(model, evaluation, deck.problem, "", n_gauss_points);
+    }
+    return rom::galerkin_newton_step(model, evaluation, deck.problem,
+                                     {.end = deck.stepping.end,
+                                      .n_gauss_points = n_gauss_points,
+                                      .volumetric = deck.stepping.volumetric});
 }
 
 }  // namespace couture::drivers

@@ -4,6 +4,7 @@
 
 #include "drivers/rom_samples.h"
 #include "io/reduced_model_file.h"
+#include "rom/galerkin.h"
 
 namespace couture::drivers {
 
@@ -47,6 +48,15 @@ class TrainedModel {
     io::ReducedModelFile file_;
     io::RomSection section_;
 };
+
+/// The answer of a model projected onto its displacement modes: linear problems are solved there,
+/// at finite strain Newton takes one step from the prediction.
+///
+/// @param deck  of the evaluation's point
+/// @throws what rom::solve_galerkin and rom::galerkin_newton_step throw
+[[nodiscard]] rom::GalerkinSolution solve_projected(const rom::ReducedModel& model,
+                                                    const rom::Evaluation& evaluation,
+                                                    const io::Deck& deck);
 
 /// What a model's file keeps beside it, for TrainedModel.
 [[nodiscard]] std::map<std::string, std::string> model_provenance(const RomSamples& samples);

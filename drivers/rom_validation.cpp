@@ -13,7 +13,6 @@
 #include "iga/core/log.h"
 #include "iga/solve/static_system.h"
 #include "io/line_plot.h"
-#include "rom/galerkin.h"
 #include "rom/member_geometry.h"
 
 namespace couture::drivers {
@@ -166,9 +165,7 @@ Validation validate_model(const TrainedModel& trained, const RomSamples& samples
         one.estimate = model.errors(one.point).displacement.relative;
         one.by_modes = errors_by_modes(model, modes, product, evaluation, full.displacement);
         if (with_galerkin) {
-            one.galerkin = measure(rom::solve_galerkin(model, evaluation, deck.problem, "",
-                                                       deck.discretization.n_gauss_points)
-                                       .displacement);
+            one.galerkin = measure(solve_projected(model, evaluation, deck).displacement);
         }
         validation.points.push_back(std::move(one));
         log::detail(fmt::format("rom: compared {} of {}", i + 1, samples.plan().n_geometries()));
@@ -299,23 +296,31 @@ std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
     deck.output.vtu = true;
     deck.output.png = png;
     std::vector<std::string> files;
-    const auto write = [&](const char* name, const VectorX& control_points,
-                           const VectorX& displacement) {
-        deck.path = std::filesystem::path(stem.filename().string() + "_worst_" + name + ".toml");
-        deck.title = name;
-        const auto space =
-            std::make_shared<const iga::Space<3>>(rom::to_member(*model.space(), control_points));
+    const auto result_of = [&](const VectorX& control_points, const VectorX& displacement) {
         iga::LinearStaticResult<3> result;
         result.cases.emplace_back();
-        result.cases.back().displacement = {space, iga::unflatten(displacement, 3)};
-        for (const auto& file :
-             write_result_files<3>(deck, space, result, {}, stem.parent_path())) {
+        result.cases.back().displacement = {
+            std::make_shared<const iga::Space<3>>(rom::to_member(*model.space(), control_points)),
+            iga::unflatten(displacement, 3)};
+        return result;
+    };
+    const auto write = [&](const char* name, const iga::LinearStaticResult<3>& result,
+                           const std::optional<MatrixX>& stress = {}) {
+        deck.path = std::filesystem::path(stem.filename().string() + "_worst_" + name + ".toml");
+        deck.title = name;
+        for (const auto& file : write_result_files<3>(deck, result.cases.back().displacement.space,
+                                                      result, {}, stem.parent_path(), stress)) {
             files.push_back(file.string());
         }
     };
-    write("predicted", evaluation.control_points, evaluation.displacement);
-    write("computed", full.control_points, full.displacement);
-    write("difference", full.control_points, evaluation.displacement - full.displacement);
+    const auto predicted = result_of(evaluation.control_points, evaluation.displacement);
+    const auto computed = result_of(full.control_points, full.displacement);
+    write("predicted", predicted);
+    write("computed", computed);
+    // Stresses at finite strain are not those of the difference.
+    write("difference", result_of(full.control_points, evaluation.displacement - full.displacement),
+          smooth_stress<3>(deck, predicted.cases.back()) -
+              smooth_stress<3>(deck, computed.cases.back()));
     return files;
 }
 

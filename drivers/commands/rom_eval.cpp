@@ -15,7 +15,6 @@
 #include "iga/solve/static_system.h"
 #include "iga/topology/jacobian_certificate.h"
 #include "rom/field_sampler.h"
-#include "rom/galerkin.h"
 #include "rom/member_geometry.h"
 
 namespace couture::drivers {
@@ -195,8 +194,7 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common) {
     }
     answer.volume = iga::volume(member);
     if (options.galerkin) {
-        answer.galerkin = rom::solve_galerkin(model, answer.evaluation, deck.problem, "",
-                                              deck.discretization.n_gauss_points);
+        answer.galerkin = solve_projected(model, answer.evaluation, deck);
     }
     if (options.solve) {
         const auto [control_points, displacement] = solve_in_full(trained, point);
