@@ -17,6 +17,13 @@ MeshStages mesh_geometry(const io::Deck& deck, const std::filesystem::path& like
             "{}: [geometry.parameters] are of a part; {} names none, but the surface {}",
             deck.geometry.source, name, mesh.surface.string());
     }
+    if (!deck.geometry.surface.empty()) {
+        if (!mesh.part.empty()) {
+            throw InputError("{}: 'surface' replaces that of {}, which has none, but the part {}",
+                             deck.geometry.source, name, mesh.part);
+        }
+        mesh.surface = deck.geometry.surface;
+    }
     for (const auto& [parameter, value] : deck.geometry.parameters) {
         mesh.parameters[parameter] = value;
     }

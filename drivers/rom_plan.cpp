@@ -1,5 +1,9 @@
 #include "drivers/rom_plan.h"
 
+#include <algorithm>
+
+#include "iga/core/error.h"
+#include "io/did_you_mean.h"
 #include "rom/designs.h"
 #include "rom/tensor_design.h"
 
@@ -23,6 +27,7 @@ MatrixX geometry_design(const io::RomSection& section, int n_parameters) {
         case io::GeometryDesign::smolyak:
             return rom::smolyak_design(n_parameters, section.level, rom::NestedRule::equidistant);
         case io::GeometryDesign::clenshaw_curtis:
+        case io::GeometryDesign::list:
             break;
     }
     return rom::smolyak_design(n_parameters, section.level, rom::NestedRule::clenshaw_curtis);
@@ -38,7 +43,71 @@ MatrixX level_design(const io::RomSection& section, const std::vector<int>& posi
     return design.points();
 }
 
+struct ListedMembers {
+    std::vector<io::FamilyMember> members;
+    // In the unit cube, n x parameters of the geometry.
+    MatrixX points;
+};
+
+ListedMembers read_list(const std::filesystem::path& path, const rom::ParameterSpace& space,
+                        const std::vector<int>& positions) {
+    ListedMembers list{io::read_member_table(path), {}};
+    const std::string name = path.filename().string();
+    const auto n_parameters = static_cast<Eigen::Index>(positions.size());
+    list.points.resize(static_cast<Eigen::Index>(list.members.size()), n_parameters);
+    std::vector<std::string> names;
+    for (const int position : positions) names.push_back(space.parameters()[position].name);
+    const io::FamilyMember& first = list.members.front();
+    for (const auto& [column, value] : first.parameters) {
+        if (std::ranges::find(names, column) == names.end()) {
+            const std::string help = io::did_you_mean(column, names);
+            throw InputError(
+                "{}: column '{}' is no [[rom.parameter]] of the geometry{} There are "
+                "{}",
+                name, column, help.empty() ? "." : help, io::quoted_list(names));
+        }
+    }
+    for (Eigen::Index k = 0; k < n_parameters; ++k) {
+        const rom::Parameter& parameter = space.parameters()[positions[k]];
+        for (std::size_t i = 0; i < list.members.size(); ++i) {
+            const auto found = list.members[i].parameters.find(parameter.name);
+            if (found == list.members[i].parameters.end()) {
+                throw InputError(
+                    "{}: no column '{}'; [rom] needs one for each parameter of the "
+                    "geometry",
+                    name, parameter.name);
+            }
+            if (found->second < parameter.lower || found->second > parameter.upper) {
+                throw InputError("{}: member '{}' has {} = {}, out of its range [{}, {}]", name,
+                                 list.members[i].name, parameter.name, found->second,
+                                 parameter.lower, parameter.upper);
+            }
+            list.points(static_cast<Eigen::Index>(i), k) =
+                (found->second - parameter.lower) / (parameter.upper - parameter.lower);
+        }
+    }
+    if (first.surface.empty() && first.volume.empty()) list.members.clear();
+    return list;
+}
+
 }  // namespace
+
+const io::FamilyMember* RomPlan::member_at(const VectorX& point) const {
+    constexpr double rounding = 1e-9;
+    const VectorX unit = space.to_unit(point);
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        double distance = 0.0;
+        for (std::size_t k = 0; k < geometry.size(); ++k) {
+            // Validation plans have other groups behind.
+            if (space.parameters()[geometry[k]].group != rom::ParameterGroup::geometry) continue;
+            distance = std::max(distance, std::abs(unit[geometry[k]] -
+                                                   geometry_points(static_cast<Eigen::Index>(i),
+                                                                   static_cast<Eigen::Index>(k))));
+        }
+        if (distance <= rounding) return &listed[i];
+    }
+    return nullptr;
+}
 
 VectorX RomPlan::point(int i_geometry, int i_load, int i_material) const {
     VectorX unit = VectorX::Constant(space.size(), 0.5);
@@ -66,17 +135,49 @@ RomPlan make_rom_plan(const io::RomSection& section) {
                  section.inputs(rom::ParameterGroup::material),
                  {},
                  {},
+                 {},
+                 {},
                  {}};
-    plan.geometry_points = geometry_design(section, static_cast<int>(plan.geometry.size()));
+    plan.reference = plan.space.centre();
+    if (section.design == io::GeometryDesign::list) {
+        ListedMembers list = read_list(section.members, plan.space, plan.geometry);
+        plan.geometry_points = std::move(list.points);
+        plan.listed = std::move(list.members);
+        constexpr double middle = 0.5;
+        Eigen::Index nearest = 0;
+        (plan.geometry_points.array() - middle).matrix().rowwise().norm().minCoeff(&nearest);
+        VectorX unit = VectorX::Constant(plan.space.size(), middle);
+        unit(plan.geometry) = plan.geometry_points.row(nearest).transpose();
+        plan.reference = plan.space.from_unit(unit);
+    } else {
+        plan.geometry_points = geometry_design(section, static_cast<int>(plan.geometry.size()));
+    }
     plan.load_points = level_design(section, plan.load);
     plan.material_points = level_design(section, plan.material);
     return plan;
 }
 
 RomPlan make_validation_plan(const io::RomSection& section, int n_points, std::uint64_t seed) {
-    RomPlan plan{section.space(), {}, {}, {}, {}, {}, {}};
+    RomPlan plan{section.space(), {}, {}, {}, {}, {}, {}, {}, {}};
     for (int i = 0; i < plan.space.size(); ++i) plan.geometry.push_back(i);
+    plan.reference = make_rom_plan(section).reference;
+    std::optional<ListedMembers> list;
+    const std::vector<int> positions = section.inputs(rom::ParameterGroup::geometry);
+    if (section.design == io::GeometryDesign::list) {
+        if (section.validation.empty()) {
+            throw InputError(
+                "{}: members that are listed are compared with others that are: write 'validation' "
+                "= a table like 'members'",
+                section.source);
+        }
+        list = read_list(section.validation, plan.space, positions);
+        n_points = static_cast<int>(list->points.rows());
+    }
     plan.geometry_points = rom::latin_hypercube_design(plan.space.size(), n_points, seed);
+    if (list) {
+        plan.geometry_points(Eigen::all, positions) = list->points;
+        plan.listed = std::move(list->members);
+    }
     plan.load_points = MatrixX::Zero(1, 0);
     plan.material_points = MatrixX::Zero(1, 0);
     return plan;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "io/family_members.h"
 #include "io/rom_section.h"
 
 namespace couture::drivers {
@@ -19,6 +20,10 @@ struct RomPlan {
     MatrixX geometry_points;
     MatrixX load_points;
     MatrixX material_points;
+    /// In the units, of the member that fixes connectivity and discretization.
+    VectorX reference;
+    /// Of the design `list`: the first geometries' files, if they have any.
+    std::vector<io::FamilyMember> listed;
 
     [[nodiscard]] int n_geometries() const { return static_cast<int>(geometry_points.rows()); }
     [[nodiscard]] int n_loads() const { return static_cast<int>(load_points.rows()); }
@@ -26,6 +31,8 @@ struct RomPlan {
     [[nodiscard]] int n_snapshots() const { return n_geometries() * n_loads() * n_materials(); }
     /// Of all parameters, in their units.
     [[nodiscard]] VectorX point(int i_geometry, int i_load, int i_material) const;
+    /// The listed member at a point of the parameters; null if there is none.
+    [[nodiscard]] const io::FamilyMember* member_at(const VectorX& point) const;
     /// Appends points of the geometry. @param points  n x parameters of the group, unit cube
     void add_geometries(const MatrixX& points);
 };
@@ -33,11 +40,18 @@ struct RomPlan {
 /// The designs of a deck's section [rom]: that of the geometry, and all combinations of the levels
 /// of loads and of materials.
 ///
+/// The reference member is in the middle of all ranges, of listed members the one nearest to it.
+///
 /// Source: [Maquart19] Eq. (7.4).
+/// @throws FileError, InputError  what read_member_table throws; for a table without a column of a
+///                     geometric parameter, with columns that are none, or values out of range
 [[nodiscard]] RomPlan make_rom_plan(const io::RomSection& section);
 
 /// Points at which a model is tested: a maximin Latin hypercube over all parameters, the factored
-/// ones among them. Each point is a geometry of its own.
+/// ones among them. Each point is a geometry of its own. Of the design `list` all members of the
+/// table `validation`, the other parameters from the hypercube.
+///
+/// @throws InputError  for a list without a table `validation`, and as make_rom_plan
 [[nodiscard]] RomPlan make_validation_plan(const io::RomSection& section, int n_points,
                                            std::uint64_t seed);
 

@@ -142,7 +142,11 @@ std::string RomSamples::job() const {
         }
         return list;
     };
-    const nlohmann::ordered_json job = {
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const io::FamilyMember& member : plan_.listed) {
+        files.push_back(hash_of(member.surface.empty() ? member.volume : member.surface));
+    }
+    nlohmann::ordered_json job = {
         {"program", "couture " COUTURE_VERSION},
         {"model", text_hash(deck_.model_text)},
         {"geometry file", hash_of(deck_.geometry.file)},
@@ -151,12 +155,14 @@ std::string RomSamples::job() const {
         {"geometry points", rows(plan_.geometry_points.topRows(plan_.n_geometries() - n_added_))},
         {"load points", rows(plan_.load_points)},
         {"material points", rows(plan_.material_points)}};
+    if (!files.empty()) job["members"] = files;
     return job.dump(1) + "\n";
 }
 
-io::Deck RomSamples::deck_at(const VectorX& point) const {
+io::Deck RomSamples::parsed_deck(const VectorX& point, std::vector<std::string> more) const {
     std::vector<std::string> all = overrides_;
     for (std::string& one : deck_.rom->overrides(point)) all.push_back(std::move(one));
+    for (std::string& one : more) all.push_back(std::move(one));
     try {
         return io::parse_deck(text_, path_, all);
     } catch (const InputError& error) {
@@ -165,11 +171,26 @@ io::Deck RomSamples::deck_at(const VectorX& point) const {
     }
 }
 
+io::Deck RomSamples::deck_at(const VectorX& point) const { return parsed_deck(point, {}); }
+
+io::Deck RomSamples::deck_of_member(const VectorX& point) const {
+    if (plan_.listed.empty()) return deck_at(point);
+    const io::FamilyMember* member = plan_.member_at(point);
+    if (member == nullptr) {
+        throw InputError("{}: no member of {} is at {}", section().source,
+                         section().members.filename().string(), describe_point(plan_.space, point));
+    }
+    const bool is_surface = !member->surface.empty();
+    const auto path = std::filesystem::absolute(is_surface ? member->surface : member->volume);
+    return parsed_deck(point, {(is_surface ? "geometry.surface=" : "geometry.file=") +
+                               nlohmann::json(path.string()).dump()});
+}
+
 iga::SpacePtr<3> RomSamples::make_reference(io::SnapshotStore& store) const {
     if (auto reference = store.reference()) {
         return std::make_shared<const iga::Space<3>>(std::move(*reference));
     }
-    const io::Deck deck = deck_at(plan_.space.centre());
+    const io::Deck deck = deck_of_member(plan_.reference);
     iga::MultiPatch<3> geometry;
     if (deck.geometry.mesh.empty()) {
         geometry = as_volume(load_geometry(deck), deck);
@@ -196,7 +217,7 @@ iga::SpacePtr<3> RomSamples::make_reference(io::SnapshotStore& store) const {
 
 iga::SpacePtr<3> RomSamples::make_member(const VectorX& point,
                                          const io::SnapshotStore& store) const {
-    const io::Deck deck = deck_at(point);
+    const io::Deck deck = deck_of_member(point);
     iga::MultiPatch<3> geometry;
     if (deck.geometry.mesh.empty()) {
         geometry = as_volume(load_geometry(deck), deck);

@@ -62,6 +62,9 @@ class RomSamples {
     void check_factored(const iga::SpacePtr<3>& reference) const;
 
   private:
+    [[nodiscard]] io::Deck parsed_deck(const VectorX& point, std::vector<std::string> more) const;
+    // With the member's own geometry, of a listed one its file.
+    [[nodiscard]] io::Deck deck_of_member(const VectorX& point) const;
     [[nodiscard]] MatrixX solve_linear(const iga::SpacePtr<3>& member,
                                        const std::vector<io::Deck>& decks);
 

@@ -132,7 +132,7 @@ rom::SnapshotSet read_snapshots(const RomSamples& samples, const iga::Space<3>& 
     const int n_mechanics = plan.n_loads() * plan.n_materials();
     rom::SnapshotSet set{plan.space,
                          {},
-                         plan.space.centre(),
+                         plan.reference,
                          reference.geometry(),
                          plan.geometry_points,
                          {},

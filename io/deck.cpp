@@ -113,13 +113,14 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
     geometry.source = section.place().source;
     const auto file = section.text("file");
     const auto part = section.text("part");
-    if (section.has("surface")) {
+    const auto mesh = section.text("mesh");
+    const auto surface = section.text("surface");
+    if (surface && !mesh) {
         section.mistake("surface",
-                        "'surface' is for `couture mesh`; a problem is solved on splines: 'file' "
-                        "or 'part'");
+                        "'surface' is for `couture mesh`; a problem is solved on splines: 'file', "
+                        "'part', or a 'mesh' that is made of the surface");
         return;
     }
-    const auto mesh = section.text("mesh");
     const int n_given = static_cast<int>(section.has("file")) +
                         static_cast<int>(section.has("part")) +
                         static_cast<int>(section.has("mesh"));
@@ -143,6 +144,10 @@ void read_geometry(Section& section, const fs::path& folder, GeometrySource& geo
     if (mesh) {
         geometry.mesh = folder / *mesh;
         require_file("mesh", geometry.mesh);
+    }
+    if (surface) {
+        geometry.surface = folder / *surface;
+        require_file("surface", geometry.surface);
     }
     geometry.part = part.value_or("");
     const auto read_table = [&](const std::string& key,
@@ -279,7 +284,7 @@ Deck parse_deck(const std::string& text, const fs::path& path,
     for_section(top, "solver", [&](Section& section) { read_solver(section, deck.solver); });
     read_stepping(top, deck);
     for_section(top, "output", [&](Section& section) { read_output(section, deck); });
-    deck.rom = read_rom_section(top);
+    deck.rom = read_rom_section(top, deck.path.parent_path());
     top.finish();
     context.mistakes.throw_if_any();
     if (deck.is_hyperelastic() && !deck.output.png_scale) {

@@ -20,6 +20,8 @@ struct GeometrySource {
     std::filesystem::path file;
     /// A deck for meshing: the volume that it makes.
     std::filesystem::path mesh;
+    /// In place of the surface that `mesh` names; empty: that one.
+    std::filesystem::path surface;
     std::string part;
     /// Of the part, or of the part that `mesh` names.
     std::map<std::string, double> parameters;

@@ -100,24 +100,32 @@ class Table {
             if (head_[k] == "name") {
                 member.name = cells[k];
             } else if (head_[k] == "surface") {
-                member.surface = path_.parent_path() / cells[k];
-                if (!std::filesystem::is_regular_file(member.surface)) {
-                    throw InputError("{}: there is no file {} (paths are relative to the table)",
-                                     where(line), member.surface.string());
-                }
+                member.surface = read_path(cells[k], line);
+            } else if (head_[k] == "volume") {
+                member.volume = read_path(cells[k], line);
             } else {
                 member.parameters[head_[k]] = read_number(cells[k], head_[k], line);
             }
         }
         if (std::find(head_.begin(), head_.end(), "name") == head_.end()) {
-            member.name = member.surface.empty() ? fmt::format("member_{}", members_.size() + 1)
-                                                 : member.surface.stem().string();
+            const auto& file = member.surface.empty() ? member.volume : member.surface;
+            member.name =
+                file.empty() ? fmt::format("member_{}", members_.size() + 1) : file.stem().string();
         }
         check_name(member.name, where(line));
         if (!names_.insert(member.name).second) {
             throw InputError("{}: there is a member '{}' already", where(line), member.name);
         }
         members_.push_back(std::move(member));
+    }
+
+    [[nodiscard]] std::filesystem::path read_path(const std::string& cell, int line) const {
+        std::filesystem::path path = path_.parent_path() / cell;
+        if (!std::filesystem::is_regular_file(path)) {
+            throw InputError("{}: there is no file {} (paths are relative to the table)",
+                             where(line), path.string());
+        }
+        return path;
     }
 
     [[nodiscard]] double read_number(const std::string& cell, const std::string& column,
@@ -156,7 +164,7 @@ void order_members(const MeshDeck& deck, std::vector<FamilyMember>& members) {
             return member.name == default_reference;
         });
         if (!is_there) {
-            members.insert(members.begin(), {default_reference, deck.parameters, deck.surface});
+            members.insert(members.begin(), {default_reference, deck.parameters, deck.surface, {}});
             return;
         }
     }
@@ -180,9 +188,9 @@ std::vector<FamilyMember> star_design(const MeshDeck& deck) {
     }
     constexpr double metres_per_millimetre = 1e-3;
     const double millimetre = metres_per_millimetre / deck.units.scale(dimensions::length);
-    std::vector<FamilyMember> members{{default_reference, deck.parameters, {}}};
+    std::vector<FamilyMember> members{{default_reference, deck.parameters, {}, {}}};
     const auto add = [&](const std::string& name, const char* end, double value) {
-        FamilyMember member{name + end, deck.parameters, {}};
+        FamilyMember member{name + end, deck.parameters, {}, {}};
         member.parameters[name] = value;
         members.push_back(std::move(member));
     };
@@ -203,8 +211,13 @@ std::vector<FamilyMember> star_design(const MeshDeck& deck) {
 }
 
 std::vector<FamilyMember> listed_members(const MeshDeck& deck) {
-    std::vector<FamilyMember> members = Table(deck.family->parameters).members();
+    std::vector<FamilyMember> members = read_member_table(deck.family->parameters);
     for (FamilyMember& member : members) {
+        if (!member.volume.empty()) {
+            throw InputError(
+                "{}: member '{}' is a 'volume'; a family is meshed from a 'surface' or a part",
+                deck.family->parameters.filename().string(), member.name);
+        }
         if (deck.part.empty() != !member.surface.empty()) {
             throw InputError(
                 "{}: member '{}' {}", deck.family->parameters.filename().string(), member.name,
@@ -239,6 +252,10 @@ std::vector<FamilyMember> chosen(const MeshDeck& deck, const std::vector<FamilyM
 }
 
 }  // namespace
+
+std::vector<FamilyMember> read_member_table(const std::filesystem::path& path) {
+    return Table(path).members();
+}
 
 std::vector<FamilyMember> family_members(const MeshDeck& deck) {
     std::vector<FamilyMember> members =

@@ -14,9 +14,18 @@ struct FamilyMember {
     std::string name;
     /// In the units of the deck; those left out are the deck's.
     std::map<std::string, double> parameters;
-    /// If members are given as files.
+    /// If members are given as files: triangles, or a spline volume.
     std::filesystem::path surface;
+    std::filesystem::path volume;
 };
+
+/// A table of members: a head line with the names of parameters, and `name`, `surface` or `volume`
+/// with files beside it; a line for each member, cells parted by commas. Members without names are
+/// called after their files, or member_1, ...
+///
+/// @throws FileError   if the file can't be read
+/// @throws InputError  for what is wrong in it, with its line
+[[nodiscard]] std::vector<FamilyMember> read_member_table(const std::filesystem::path& path);
 
 /// The members that the section [family] of a deck lists, the reference first, the others in their
 /// order.

@@ -48,8 +48,17 @@ const TomlNode* find_value(const TomlNode& document, const std::string& key) {
     return node;
 }
 
-void read_keys(Section& section, const TomlNode& document, RomParameter& result) {
+// @param is_listed  parameters without a key are columns of a table of members
+void read_keys(Section& section, const TomlNode& document, bool is_listed, RomParameter& result) {
     result.keys = section.texts("key");
+    if (result.keys.empty() && is_listed) {
+        if (!section.has("name")) {
+            section.mistake("name",
+                            "[[rom.parameter]] needs 'key', the value of the deck that it is, or "
+                            "'name', a column of 'members' of [rom]");
+        }
+        return;
+    }
     if (result.keys.empty()) {
         section.mistake("key",
                         "[[rom.parameter]] needs 'key', the value of the deck that it is, as for "
@@ -88,10 +97,10 @@ void read_keys(Section& section, const TomlNode& document, RomParameter& result)
     result.parameter.group = *group;
 }
 
-RomParameter read_parameter(Section& section, const TomlNode& document) {
+RomParameter read_parameter(Section& section, const TomlNode& document, bool is_listed) {
     RomParameter result;
     result.source = section.place().source;
-    read_keys(section, document, result);
+    read_keys(section, document, is_listed, result);
     const std::string key = result.keys.empty() ? "" : result.keys.front();
     result.parameter.name = section.text("name").value_or(key.substr(key.rfind('.') + 1));
     if (result.parameter.name.find_first_of("= ") != std::string::npos) {
@@ -137,15 +146,33 @@ RomParameter read_parameter(Section& section, const TomlNode& document) {
     return result;
 }
 
-void read_design(Section& section, RomSection& result) {
-    static const std::vector<std::string> names = {"star", "full",    "random",         "sobol",
-                                                   "lhs",  "smolyak", "clenshaw_curtis"};
+void read_lists(Section& section, const std::filesystem::path& folder, RomSection& result) {
+    const bool is_list = result.design == GeometryDesign::list;
+    for (const auto& [key, path] :
+         {std::pair{"members", &result.members}, std::pair{"validation", &result.validation}}) {
+        const auto file = section.text(key);
+        if (!file) continue;
+        *path = folder / *file;
+        if (!is_list) section.mistake(key, fmt::format("'{}' is of design = \"list\"", key));
+    }
+    if (is_list && result.members.empty()) {
+        section.mistake("design",
+                        "design = \"list\" needs 'members', a table (.csv) with a column for each "
+                        "geometric parameter");
+    }
+}
+
+void read_design(Section& section, const std::filesystem::path& folder, RomSection& result) {
+    static const std::vector<std::string> names = {"star", "full",    "random",          "sobol",
+                                                   "lhs",  "smolyak", "clenshaw_curtis", "list"};
     const std::string name = section.choice("design", names).value_or("star");
     result.design =
         static_cast<GeometryDesign>(std::find(names.begin(), names.end(), name) - names.begin());
     const bool has_level = result.design == GeometryDesign::star ||
                            result.design == GeometryDesign::smolyak ||
                            result.design == GeometryDesign::clenshaw_curtis;
+    const bool has_samples = !has_level && result.design != GeometryDesign::list;
+    read_lists(section, folder, result);
     constexpr int most_levels = 8;
     constexpr int most_samples = 1'000'000;
     result.level =
@@ -153,14 +180,14 @@ void read_design(Section& section, RomSection& result) {
             .value_or(1);
     result.n_samples = section.integer("samples", 1, most_samples).value_or(0);
     if (!has_level && section.has("level")) {
-        section.mistake("level",
-                        fmt::format("design = \"{}\" has no 'level'; it has 'samples'", name));
+        section.mistake("level", fmt::format("design = \"{}\" has no 'level'; it has '{}'", name,
+                                             has_samples ? "samples" : "members"));
     }
-    if (has_level && section.has("samples")) {
-        section.mistake("samples",
-                        fmt::format("design = \"{}\" has no 'samples'; it has 'level'", name));
+    if (!has_samples && section.has("samples")) {
+        section.mistake("samples", fmt::format("design = \"{}\" has no 'samples'; it has '{}'",
+                                               name, has_level ? "level" : "members"));
     }
-    if (!has_level && !section.has("samples")) {
+    if (has_samples && !section.has("samples")) {
         section.mistake("design", fmt::format("design = \"{}\" needs 'samples'{}", name,
                                               name == "full" ? ", the values on each axis" : ""));
     }
@@ -199,12 +226,12 @@ std::vector<std::string> RomSection::overrides(const VectorX& point) const {
     return result;
 }
 
-std::optional<RomSection> read_rom_section(Section& top) {
+std::optional<RomSection> read_rom_section(Section& top, const std::filesystem::path& folder) {
     std::optional<RomSection> result;
     for_section(top, "rom", [&](Section& section) {
         result.emplace();
         result->source = section.place().source;
-        read_design(section, *result);
+        read_design(section, folder, *result);
         result->is_stacked = section.choice("basis", {"separate", "stacked"}) == "stacked";
         constexpr int most_modes = 100'000;
         result->n_modes = section.integer("modes", 1, most_modes);
@@ -218,7 +245,8 @@ std::optional<RomSection> read_rom_section(Section& top) {
             result->trend = rom::Trend::linear;
         }
         for_each_entry(section, "parameter", [&](Section& entry) {
-            result->parameters.push_back(read_parameter(entry, top.table()));
+            result->parameters.push_back(
+                read_parameter(entry, top.table(), result->design == GeometryDesign::list));
         });
         if (result->parameters.empty()) {
             section.mistake("parameter",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace couture::io {
 struct RomParameter {
     rom::Parameter parameter;
     /// As of --set: "geometry.parameters.R1", "resultant.0.force.1"; all get the parameter's value.
+    /// Empty: a column of listed members, whose files have it.
     std::vector<std::string> keys;
     /// Equidistant values of parameters that are no geometry, both ends among them.
     int n_levels = 2;
@@ -28,7 +30,7 @@ struct RomParameter {
 };
 
 /// Where the members of a model lie in the box of geometric parameters.
-enum class GeometryDesign { star, full, random, sobol, lhs, smolyak, clenshaw_curtis };
+enum class GeometryDesign { star, full, random, sobol, lhs, smolyak, clenshaw_curtis, list };
 
 /// What the section [rom] of a deck says.
 struct RomSection {
@@ -40,6 +42,10 @@ struct RomSection {
     /// Of random, sobol and lhs; of full on each axis.
     int n_samples = 0;
     std::uint64_t seed = 1;
+    /// Tables (see read_member_table) of the design `list`: what is learned, and what that is
+    /// compared with.
+    std::filesystem::path members;
+    std::filesystem::path validation;
     /// One vector of geometry and displacement, each scaled by its RMS, instead of two bases.
     bool is_stacked = false;
     /// At most; nothing: as many as the tolerance asks for.
@@ -65,6 +71,8 @@ struct RomSection {
 ///
 /// @param top  the deck: keys of parameters must name numbers in it (those of
 ///             [geometry.parameters] may be missing)
-[[nodiscard]] std::optional<RomSection> read_rom_section(Section& top);
+/// @param folder  that paths are relative to
+[[nodiscard]] std::optional<RomSection> read_rom_section(Section& top,
+                                                         const std::filesystem::path& folder);
 
 }  // namespace couture::io

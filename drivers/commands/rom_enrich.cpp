@@ -65,6 +65,11 @@ int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common)
             "{}: no parameter changes the geometry; more samples are 'levels' of the others",
             campaign.deck.string());
     }
+    if (samples.section().design == io::GeometryDesign::list) {
+        throw InputError(
+            "{}: members that are listed can't be made at other points; add lines to {}",
+            campaign.deck.string(), samples.section().members.filename().string());
+    }
     io::SnapshotStore store(rom_folder(campaign) / "snapshots", samples.job());
     if (campaign.retry) store.clear_failures();
     const auto n_parameters = static_cast<int>(samples.plan().geometry.size());

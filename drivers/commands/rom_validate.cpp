@@ -11,6 +11,22 @@
 
 namespace couture::drivers {
 
+namespace {
+
+// Each design of tests has one of its own.
+std::string validation_folder(const RomSamples& samples, const RomValidateOptions& options) {
+    if (samples.section().design != io::GeometryDesign::list) {
+        return fmt::format("validation_{}_{}", options.n_points, options.seed);
+    }
+    std::string texts = io::read_text(samples.section().validation);
+    for (const io::FamilyMember& member : samples.plan().listed) {
+        texts += text_hash(io::read_text(member.surface.empty() ? member.volume : member.surface));
+    }
+    return fmt::format("validation_{}_{}", text_hash(texts), options.seed);
+}
+
+}  // namespace
+
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common) {
     const Timer timer;
     const RomTrainOptions& campaign = options.campaign;
@@ -30,8 +46,7 @@ int run_rom_validate(const RomValidateOptions& options, const CommonOptions& com
     use_rom_threads(common);
     const io::SnapshotStore training(folder / "snapshots", samples.job());
     samples.use(make_validation_plan(samples.section(), options.n_points, options.seed));
-    io::SnapshotStore store(
-        folder / fmt::format("validation_{}_{}", options.n_points, options.seed), samples.job());
+    io::SnapshotStore store(folder / validation_folder(samples, options), samples.job());
     if (campaign.retry) store.clear_failures();
     store.take_reference(training);
     const auto reference = samples.make_reference(store);
