@@ -119,6 +119,7 @@ void TrainedModel::check_inside(const VectorX& point, bool is_forced) const {
     constexpr double rounding = 1e-12;
     for (int i = 0; i < space.size(); ++i) {
         const rom::Parameter& one = space.parameters()[i];
+        if (one.is_periodic) continue;
         const double outside = std::max(one.lower - point[i], point[i] - one.upper);
         if (outside <= rounding * (one.upper - one.lower)) continue;
         const double part = outside / (one.upper - one.lower);

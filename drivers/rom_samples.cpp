@@ -132,7 +132,8 @@ std::string RomSamples::job() const {
                               {"keys", one.keys},
                               {"unit", one.parameter.unit},
                               {"range", {one.parameter.lower, one.parameter.upper}},
-                              {"factored", one.is_factored}});
+                              {"factored", one.is_factored},
+                              {"periodic", one.parameter.is_periodic}});
     }
     const auto rows = [](const MatrixX& points) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -237,8 +238,9 @@ MatrixX RomSamples::solve(const iga::SpacePtr<3>& member, const std::vector<Vect
     for (const VectorX& point : points) decks.push_back(deck_at(point));
     MatrixX result(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
     const bool moves_supports = std::any_of(
-        deck_.rom->parameters.begin(), deck_.rom->parameters.end(),
-        [](const auto& parameter) { return parameter.keys.front().starts_with("displacement."); });
+        deck_.rom->parameters.begin(), deck_.rom->parameters.end(), [](const auto& parameter) {
+            return !parameter.keys.empty() && parameter.keys.front().starts_with("displacement.");
+        });
     if (!deck_.is_hyperelastic() && !moves_supports) return solve_linear(member, decks);
     for (std::size_t l = 0; l < decks.size(); ++l) {
         auto column = result.col(static_cast<Eigen::Index>(l));

@@ -73,6 +73,7 @@ Json parameters_json(const rom::ReducedModelParts& parts) {
                         {"unit", parameter.unit},
                         {"lower", parameter.lower},
                         {"upper", parameter.upper},
+                        {"periodic", parameter.is_periodic},
                         {"factor_power", parts.factor_power[i]},
                         {"reference", parts.reference_point[i]}});
     }
@@ -233,7 +234,7 @@ rom::ReducedModelParts read_parts(const Source& source, hid_t root, const Json& 
         parameters.push_back({one.at("name").get<std::string>(),
                               choice_of(source.file, group_names, one.at("group")),
                               one.at("unit").get<std::string>(), one.at("lower").get<double>(),
-                              one.at("upper").get<double>()});
+                              one.at("upper").get<double>(), one.value("periodic", false)});
         powers.push_back(one.at("factor_power").get<int>());
         reference_values.push_back(one.at("reference").get<double>());
     }

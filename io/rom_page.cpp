@@ -111,9 +111,10 @@ Json part_json(const rom::FieldPart& part, const rom::FieldModel& model, double 
 
 // ---- coefficients
 
-Json model_json(const rom::CoefficientModel& model, const std::vector<int>& inputs) {
+Json model_json(const rom::CoefficientModel& model, const rom::KrigingInputs& inputs) {
     const int n = model.n_coefficients();
-    Json object = {{"inputs", inputs},
+    Json object = {{"inputs", inputs.parameters()},
+                   {"waves", inputs.waves()},
                    {"n_coefficients", n},
                    {"is_gaussian", model.options().correlation == rom::CorrelationKind::gaussian},
                    {"is_linear_trend", model.options().trend == rom::Trend::linear}};
@@ -284,8 +285,8 @@ Json page_json(const rom::ReducedModel& model, const PageContent& content) {
     }
     Json models = Json::array();
     for (std::size_t i = 0; i < parts.models.size(); ++i) {
-        models.push_back(model_json(parts.models[i].coefficients(),
-                                    model.input_parameters(static_cast<int>(i))));
+        models.push_back(
+            model_json(parts.models[i].coefficients(), model.kriging_inputs(static_cast<int>(i))));
     }
     Json materials = Json::array();
     for (const PageMaterial& material : content.materials) {

@@ -137,6 +137,10 @@ RomParameter read_parameter(Section& section, const TomlNode& document, bool is_
     if (result.is_factored && result.parameter.group == rom::ParameterGroup::geometry) {
         section.mistake("factored", "no displacement is proportional to a geometric parameter");
     }
+    result.parameter.is_periodic = section.flag("periodic").value_or(false);
+    if (result.parameter.is_periodic && result.parameter.group != rom::ParameterGroup::geometry) {
+        section.mistake("periodic", "only parameters of the geometry can be periodic");
+    }
     if (result.is_factored && section.has("levels")) {
         section.mistake("levels", "one solution serves all values of what is 'factored'");
     }

@@ -38,6 +38,11 @@ void check(const std::vector<Parameter>& parameters) {
                 "both finite; leave the parameter out if it is fixed",
                 parameter.lower, parameter.upper, parameter.name);
         }
+        if (parameter.is_periodic && parameter.group != ParameterGroup::geometry) {
+            throw InputError(
+                "ParameterSpace: '{}' is periodic; only parameters of the geometry can be",
+                parameter.name);
+        }
     }
 }
 
@@ -86,7 +91,12 @@ VectorX ParameterSpace::from_unit(const VectorX& unit_point) const {
 
 double ParameterSpace::distance_outside(const VectorX& point) const {
     const VectorX unit = to_unit(point);
-    return std::max({0.0, -unit.minCoeff(), unit.maxCoeff() - 1.0});
+    double distance = 0.0;
+    for (int i = 0; i < size(); ++i) {
+        if (parameters_[i].is_periodic) continue;
+        distance = std::max({distance, -unit[i], unit[i] - 1.0});
+    }
+    return distance;
 }
 
 }  // namespace couture::rom

@@ -17,6 +17,8 @@ struct Parameter {
     std::string unit;
     double lower = 0.0;
     double upper = 1.0;
+    /// Both ends of the range are one state; of the shape only.
+    bool is_periodic = false;
 };
 
 /// The box in which a reduced model learns; models see it as the unit cube.
@@ -25,8 +27,7 @@ struct Parameter {
 class ParameterSpace {
   public:
     /// @throws InputError  without parameters, for two of one name, for a range that is empty or
-    /// not
-    ///                     finite
+    ///                     not finite, for a periodic load or material
     explicit ParameterSpace(std::vector<Parameter> parameters);
 
     [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
@@ -41,7 +42,8 @@ class ParameterSpace {
     /// Ranges to [0, 1], also outside of them. @param point  size() values
     [[nodiscard]] VectorX to_unit(const VectorX& point) const;
     [[nodiscard]] VectorX from_unit(const VectorX& unit_point) const;
-    /// By how much of its range the worst parameter is outside of it; 0 inside.
+    /// By how much of its range the worst parameter is outside of it; 0 inside, and for periodic
+    /// ones.
     [[nodiscard]] double distance_outside(const VectorX& point) const;
 
   private:

@@ -91,15 +91,27 @@ class Trainer {
         return {{.n_modes = options_.n_modes, .tolerance = options_.tolerance}, options_.kriging};
     }
 
+    [[nodiscard]] MatrixX geometry_inputs() const {
+        const auto sampled =
+            sampled_parameters(set_.parameters, set_.factor_power, ParameterGroup::geometry);
+        return KrigingInputs(set_.parameters, sampled).of_design(set_.geometry_points);
+    }
+    // Of the inputs of kriging.
+    [[nodiscard]] TensorDesign design() const {
+        TensorDesign design = set_.design();
+        if (set_.geometry_points.cols() > 0) design.factors.front() = geometry_inputs();
+        return design;
+    }
+
     void train_separate(ReducedModelParts& parts) const {
         const InnerProduct inner = product(3);
         TensorDesign geometries;
         if (set_.geometry_points.cols() > 0) {
-            geometries.factors = {set_.geometry_points};
+            geometries.factors = {geometry_inputs()};
         }
         parts.models.emplace_back(geometries, set_.control_points, to_field(space_, set_.reference),
                                   inner, field_options());
-        parts.models.emplace_back(set_.design(), set_.displacements,
+        parts.models.emplace_back(design(), set_.displacements,
                                   VectorX::Zero(set_.displacements.rows()), inner, field_options());
         parts.geometry = measure({}, parts.models[0], set_.control_points, inner);
         parts.displacement.i_model = 1;
@@ -115,7 +127,7 @@ class Trainer {
         const MatrixX stacked =
             stack(repeated(set_.control_points, set_.n_mechanics()), parts.geometry.scale,
                   set_.displacements, parts.displacement.scale);
-        parts.models.emplace_back(set_.design(), stacked, VectorX::Zero(stacked.rows()), product(6),
+        parts.models.emplace_back(design(), stacked, VectorX::Zero(stacked.rows()), product(6),
                                   field_options());
         parts.geometry = measure(parts.geometry, parts.models[0], stacked, inner);
         parts.displacement = measure(parts.displacement, parts.models[0], stacked, inner);
@@ -179,7 +191,7 @@ ReducedModel::ReducedModel(ReducedModelParts parts) : parts_(std::move(parts)) {
     check_parts(parts_);
     space_ = std::make_shared<const iga::Space<3>>(parts_.reference);
     for (int i = 0; i < static_cast<int>(parts_.models.size()); ++i) {
-        std::vector<int> inputs;
+        std::vector<int> sampled;
         const bool is_of_geometry = parts_.options.basis == BasisKind::separate && i == 0;
         for (const ParameterGroup group :
              {ParameterGroup::geometry, ParameterGroup::load, ParameterGroup::material}) {
@@ -187,11 +199,12 @@ ReducedModel::ReducedModel(ReducedModelParts parts) : parts_(std::move(parts)) {
                 continue;
             }
             for (const int p : sampled_parameters(parts_.parameters, parts_.factor_power, group)) {
-                inputs.push_back(p);
+                sampled.push_back(p);
             }
         }
+        KrigingInputs inputs(parts_.parameters, sampled);
         const FieldModel& model = parts_.models[i];
-        if (model.coefficients().n_inputs() != static_cast<int>(inputs.size()) ||
+        if (model.coefficients().n_inputs() != inputs.size() ||
             model.mean().size() !=
                 static_cast<Eigen::Index>(n_components(parts_.options)) * n_nodes()) {
             throw InputError(
@@ -200,12 +213,12 @@ ReducedModel::ReducedModel(ReducedModelParts parts) : parts_(std::move(parts)) {
                 i, model.coefficients().n_inputs(), model.mean().size(), inputs.size(),
                 n_components(parts_.options), n_nodes());
         }
-        input_parameters_.push_back(std::move(inputs));
+        inputs_.push_back(std::move(inputs));
     }
 }
 
 VectorX ReducedModel::inputs(int i_model, const VectorX& unit_point) const {
-    return unit_point(input_parameters_[i_model]);
+    return inputs_[i_model].at(unit_point);
 }
 
 VectorX ReducedModel::unit_point(const VectorX& point) const {
@@ -302,11 +315,13 @@ MatrixX ReducedModel::part_gradient(const FieldPart& part, const VectorX& unit_p
     const MatrixX by_inputs = model.coefficients().gradient(inputs(part.i_model, unit_point));
     const MatrixX fields = part_of(part, model.basis().modes * by_inputs);
     MatrixX gradient = MatrixX::Zero(fields.rows(), parameters().size());
-    for (std::size_t i = 0; i < input_parameters_[part.i_model].size(); ++i) {
-        const int p = input_parameters_[part.i_model][i];
-        const Parameter& parameter = parameters().parameters()[p];
-        gradient.col(p) =
-            fields.col(static_cast<Eigen::Index>(i)) / (parameter.upper - parameter.lower);
+    const std::vector<int> of_inputs = inputs_[part.i_model].parameters();
+    const VectorX slopes = inputs_[part.i_model].slopes(unit_point);
+    for (std::size_t i = 0; i < of_inputs.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const Parameter& parameter = parameters().parameters()[of_inputs[i]];
+        gradient.col(of_inputs[i]) +=
+            fields.col(k) * (slopes[k] / (parameter.upper - parameter.lower));
     }
     return gradient;
 }

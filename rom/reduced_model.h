@@ -6,6 +6,7 @@
 
 #include "iga/topology/field.h"
 #include "rom/field_part.h"
+#include "rom/kriging_inputs.h"
 #include "rom/snapshots.h"
 
 namespace couture::rom {
@@ -91,9 +92,9 @@ class ReducedModel {
     [[nodiscard]] const ReducedModelParts& parts() const { return parts_; }
     [[nodiscard]] const ParameterSpace& parameters() const { return parts_.parameters; }
     [[nodiscard]] int n_nodes() const { return space_->n_dofs(); }
-    /// The parameters that are inputs of a field model, in their order.
-    [[nodiscard]] const std::vector<int>& input_parameters(int i_model) const {
-        return input_parameters_[i_model];
+    /// What the kriging of a field model sees of the parameters.
+    [[nodiscard]] const KrigingInputs& kriging_inputs(int i_model) const {
+        return inputs_[i_model];
     }
     /// Of the reference member: the functions that all members share.
     [[nodiscard]] const iga::SpacePtr<3>& space() const { return space_; }
@@ -145,7 +146,7 @@ class ReducedModel {
     ReducedModelParts parts_;
     iga::SpacePtr<3> space_;
     /// For each field model.
-    std::vector<std::vector<int>> input_parameters_;
+    std::vector<KrigingInputs> inputs_;
 };
 
 }  // namespace couture::rom

@@ -59,7 +59,13 @@ export class Evaluator {
   }
 
   inputs(iModel, unit) {
-    return this.model.models[iModel].inputs.map((i) => unit[i]);
+    const { inputs, waves } = this.model.models[iModel];
+    // Of a periodic parameter its cosine (1) and its sine (2).
+    return inputs.map((i, k) => {
+      if (waves[k] === 0) return unit[i];
+      const angle = 2 * Math.PI * unit[i];
+      return 0.5 * (1 + (waves[k] === 1 ? Math.cos(angle) : Math.sin(angle)));
+    });
   }
 
   /** Product of the factored parameters' powers over that at the reference. */
