@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "drivers/own_layout.h"
 #include "drivers/prepared_surface.h"
@@ -227,11 +228,42 @@ void warn_of_rounded_edges(const CuboidDecomposition& cuboids, const Features& f
     }
 }
 
+using Corners = std::array<std::array<double, 3>, 3>;
+
+Corners sorted_corners(const Vector3& a, const Vector3& b, const Vector3& c) {
+    Corners corners{{{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}}};
+    std::ranges::sort(corners);
+    return corners;
+}
+
+// Those that were not taken off with a cap.
+std::vector<std::string> names_of_faces_left(const NamedFaces& faces, const SurfaceMesh& mesh) {
+    std::set<Corners> left;
+    for (const auto face : mesh.faces()) {
+        std::vector<Vector3> points;
+        for (const auto vertex : mesh.fv_range(face)) points.push_back(mesh.point(vertex));
+        left.insert(sorted_corners(points[0], points[1], points[2]));
+    }
+    std::vector<bool> is_left(faces.names.size(), false);
+    for (std::size_t t = 0; t < faces.soup.triangles.size(); ++t) {
+        const auto& [a, b, c] = faces.soup.triangles[t];
+        const auto& points = faces.soup.points;
+        if (left.contains(sorted_corners(points[a], points[b], points[c]))) {
+            is_left[faces.face_of_triangle[t]] = true;
+        }
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < is_left.size(); ++i) {
+        if (is_left[i]) names.push_back(faces.names[i]);
+    }
+    return names;
+}
+
 // Faces of the surface that no side of a cuboid belongs to.
-void warn_of_lost_faces(const NamedFaces& faces,
+void warn_of_lost_faces(const std::vector<std::string>& faces,
                         const std::map<std::string, std::vector<CuboidSide>>& sets) {
     std::vector<std::string> lost;
-    for (const std::string& name : faces.names) {
+    for (const std::string& name : faces) {
         const auto set = sets.find(name);
         if (set == sets.end() || set->second.empty()) lost.push_back(name);
     }
@@ -339,7 +371,10 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
                 "volume: sharp edges that no arc runs along are rounded by {:.2e} of the diagonal",
                 stages.solid->distance->rounded));
         }
-        if (solid.faces) warn_of_lost_faces(*solid.faces, stages.solid->cuboids.volume.sets);
+        if (solid.faces) {
+            warn_of_lost_faces(names_of_faces_left(*solid.faces, stages.mesh),
+                               stages.solid->cuboids.volume.sets);
+        }
     };
     if (!deck.layout.empty() && last > MeshStage::pants) {
         solid.progress("placing the layout");
