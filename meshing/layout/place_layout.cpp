@@ -12,7 +12,8 @@ namespace couture::meshing {
 
 namespace {
 
-// Nodes in the place of old ones lie there; others on the boundary amid their neighbours.
+// Nodes in the place of old ones lie there; others on the boundary amid their neighbours, nearer to
+// those in place.
 std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
                                       const std::vector<int>& node_in_place,
                                       const QuadLayout& boundary) {
@@ -23,15 +24,23 @@ std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
         is_known[node_in_place[n]] = true;
     }
     constexpr int n_sweeps = 100;
-    const std::vector<int> valences = boundary.valences();
+    // A sheet that ends on a side leaves most of it to the strips' neighbours: strips as wide as
+    // these have slim corners beside them.
+    constexpr double weight_of_known = 4.0;
     for (int sweep = 0; sweep < n_sweeps; ++sweep) {
         std::vector<Vector3> sums(boundary.n_nodes(), Vector3::Zero());
+        std::vector<double> weights(boundary.n_nodes(), 0.0);
+        const auto add = [&](int node, int other) {
+            const double weight = is_known[other] ? weight_of_known : 1.0;
+            sums[node] += weight * padded[other];
+            weights[node] += weight;
+        };
         for (const QuadLayout::Arc& arc : boundary.arcs()) {
-            sums[arc.from] += padded[arc.to];
-            sums[arc.to] += padded[arc.from];
+            add(arc.from, arc.to);
+            add(arc.to, arc.from);
         }
         for (int n = 0; n < boundary.n_nodes(); ++n) {
-            if (!is_known[n] && valences[n] > 0) padded[n] = sums[n] / valences[n];
+            if (!is_known[n] && weights[n] > 0.0) padded[n] = sums[n] / weights[n];
         }
     }
     return padded;

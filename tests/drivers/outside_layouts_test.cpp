@@ -49,9 +49,8 @@ TEST_CASE("mesh: outside layouts become valid volumes of better elements", "[dri
     CAPTURE(theirs.dump(), ours.at("volume").dump());
     CHECK(ours.at("volume").at("certificate") == "valid");
     CHECK(ours.at("volume").at("mean_scaled_jacobian") > theirs.at("mean_scaled_jacobian"));
-    // Wanted of all; the rod's least, 0.20, is below HexGen's 0.32 and is reported only.
-    CHECK_NOFAIL(ours.at("volume").at("min_scaled_jacobian") > theirs.at("min_scaled_jacobian"));
-    CHECK(ours.at("volume").at("min_scaled_jacobian") > 0.1);
+    CHECK(ours.at("volume").at("min_scaled_jacobian") > theirs.at("min_scaled_jacobian"));
+    CHECK(ours.at("volume").at("min_scaled_jacobian") > 0.2);
     CHECK(fs::exists(folder.path() / "o" / ("mesh_" + name + "_volume.png")));
 }
 
