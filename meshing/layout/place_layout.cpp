@@ -1,5 +1,9 @@
 #include "meshing/layout/place_layout.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <set>
 
 #include "iga/core/error.h"
@@ -60,6 +64,51 @@ std::vector<LayoutTie> complete_ties(SurfaceMesh& mesh, const QuadLayout& layout
     return paths.take_ties();
 }
 
+// Cuboids of which each is numbered the wrong way round lie inside out.
+void check_right_handed(const QuadLayout& boundary, const std::vector<Vector3>& positions) {
+    double volume = 0.0;
+    for (const auto& [a, b, c, d] : boundary.quads()) {
+        for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
+            volume += positions[p].dot(positions[q].cross(positions[r])) / 6.0;
+        }
+    }
+    if (volume > 0.0) return;
+    throw GeometryError(
+        "layout: its cuboids have the volume {:.4g} and lie inside out; corners must be numbered "
+        "right-handed: exchange the first four of each with the other four",
+        volume);
+}
+
+// Without features the surface takes nodes wherever they are; those of a layout in other units or
+// at another place lie far from it. Where there are features, an arc must lie along one.
+void check_is_near(const SurfaceMesh& mesh, const QuadLayout& layout,
+                   const std::vector<Vector3>& positions) {
+    const bool has_features =
+        std::ranges::any_of(mesh.edges(), [&](auto edge) { return mesh.data(edge).feature >= 0; });
+    if (has_features) {
+        throw TopologyError(
+            "layout: no sharp edge of the surface runs along an arc of the layout; the layout's "
+            "nodes must lie near the surface's corners and sharp edges, in the same units");
+    }
+    constexpr double reach = 0.25;
+    const double diagonal = bounding_box_diagonal(mesh);
+    const std::vector<int> valences = layout.valences();
+    for (int node = 0; node < layout.n_nodes(); ++node) {
+        if (valences[node] == 0) continue;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto v : mesh.vertices()) {
+            nearest = std::min(nearest, (mesh.point(v) - positions[node]).norm());
+        }
+        if (nearest <= reach * diagonal) continue;
+        throw TopologyError(
+            "layout: node {} at ({:.6g}, {:.6g}, {:.6g}) lies {:.3g} from the surface, more than a "
+            "quarter of its diagonal {:.3g}; the layout's nodes must lie near the surface, in the "
+            "same units",
+            layout.node_name(node), positions[node].x(), positions[node].y(), positions[node].z(),
+            nearest, diagonal);
+    }
+}
+
 double path_length(const SurfaceMesh& mesh, const std::vector<VertexHandle>& path) {
     double length = 0.0;
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
@@ -95,15 +144,12 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
             "same genus",
             boundary.layout.euler_characteristic(), chi);
     }
+    check_right_handed(boundary.layout, placed.positions);
     CuboidDecomposition result;
     result.mesh = mesh;
     std::vector<LayoutTie> feature_ties =
         tie_features(result.mesh, features, boundary.layout, placed.positions, most_reach);
-    if (feature_ties.empty()) {
-        throw TopologyError(
-            "layout: no sharp edge of the surface runs along an arc of the layout; the layout's "
-            "nodes must lie near the surface's corners and sharp edges, in the same units");
-    }
+    if (feature_ties.empty()) check_is_near(result.mesh, boundary.layout, placed.positions);
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::set<VertexHandle> held;
