@@ -1,15 +1,18 @@
 #include "meshing/layout/blunt_path.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace couture::meshing {
 
 namespace {
 
-constexpr double widest_corner = 2.0 * std::numbers::pi / 3.0;
-constexpr double largest_part = 0.1;
+// Of the length: less than this does not count.
+constexpr double smallest_part = 0.1;
 
 // Of the solid around a halfedge.
 double interior_angle(const SurfaceMesh& mesh, HalfedgeHandle h) {
@@ -21,19 +24,33 @@ double interior_angle(const SurfaceMesh& mesh, HalfedgeHandle h) {
            std::atan2(left.cross(right).dot(along.normalized()), left.dot(right));
 }
 
+// The least of values with their lengths, but for the smallest part of the length.
+double least_of_most(std::vector<std::pair<double, double>> values, double length) {
+    std::ranges::sort(values);
+    double worst_length = 0.0;
+    for (const auto& [value, l] : values) {
+        worst_length += l;
+        if (worst_length > smallest_part * length) return value;
+    }
+    return 1.0;
+}
+
 }  // namespace
 
 bool is_blunt(const SurfaceMesh& mesh, std::span<const VertexHandle> path) {
     double length = 0.0;
-    double blunt_length = 0.0;
+    std::vector<std::pair<double, double>> of_one;
+    std::vector<std::pair<double, double>> of_two;
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
         const HalfedgeHandle h = mesh.find_halfedge(path[k], path[k + 1]);
         const double l = edge_length(mesh, mesh.edge_handle(h));
         length += l;
         if (mesh.is_boundary(mesh.edge_handle(h))) continue;
-        if (interior_angle(mesh, h) > widest_corner) blunt_length += l;
+        const double angle = interior_angle(mesh, h);
+        of_one.emplace_back(std::sin(angle), l);
+        of_two.emplace_back(std::sin(0.5 * angle), l);
     }
-    return blunt_length > largest_part * length;
+    return least_of_most(std::move(of_two), length) > least_of_most(std::move(of_one), length);
 }
 
 }  // namespace couture::meshing

@@ -1,5 +1,9 @@
 #include "meshing/layout/place_layout.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <set>
 
 #include "iga/core/error.h"
@@ -12,7 +16,8 @@ namespace couture::meshing {
 
 namespace {
 
-// Nodes in the place of old ones lie there; others on the boundary amid their neighbours.
+// Nodes in the place of old ones lie there; others on the boundary amid their neighbours, nearer to
+// those in place.
 std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
                                       const std::vector<int>& node_in_place,
                                       const QuadLayout& boundary) {
@@ -23,15 +28,23 @@ std::vector<Vector3> padded_positions(const std::vector<Vector3>& positions,
         is_known[node_in_place[n]] = true;
     }
     constexpr int n_sweeps = 100;
-    const std::vector<int> valences = boundary.valences();
+    // A sheet that ends on a side leaves most of it to the strips' neighbours: strips as wide as
+    // these have slim corners beside them.
+    constexpr double weight_of_known = 4.0;
     for (int sweep = 0; sweep < n_sweeps; ++sweep) {
         std::vector<Vector3> sums(boundary.n_nodes(), Vector3::Zero());
+        std::vector<double> weights(boundary.n_nodes(), 0.0);
+        const auto add = [&](int node, int other) {
+            const double weight = is_known[other] ? weight_of_known : 1.0;
+            sums[node] += weight * padded[other];
+            weights[node] += weight;
+        };
         for (const QuadLayout::Arc& arc : boundary.arcs()) {
-            sums[arc.from] += padded[arc.to];
-            sums[arc.to] += padded[arc.from];
+            add(arc.from, arc.to);
+            add(arc.to, arc.from);
         }
         for (int n = 0; n < boundary.n_nodes(); ++n) {
-            if (!is_known[n] && valences[n] > 0) padded[n] = sums[n] / valences[n];
+            if (!is_known[n] && weights[n] > 0.0) padded[n] = sums[n] / weights[n];
         }
     }
     return padded;
@@ -49,6 +62,51 @@ std::vector<LayoutTie> complete_ties(SurfaceMesh& mesh, const QuadLayout& layout
     for (const LayoutTie& tie : ties) paths.draw(tie);
     cut_into_discs(mesh, layout, positions, paths);
     return paths.take_ties();
+}
+
+// Cuboids of which each is numbered the wrong way round lie inside out.
+void check_right_handed(const QuadLayout& boundary, const std::vector<Vector3>& positions) {
+    double volume = 0.0;
+    for (const auto& [a, b, c, d] : boundary.quads()) {
+        for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
+            volume += positions[p].dot(positions[q].cross(positions[r])) / 6.0;
+        }
+    }
+    if (volume > 0.0) return;
+    throw GeometryError(
+        "layout: its cuboids have the volume {:.4g} and lie inside out; corners must be numbered "
+        "right-handed: exchange the first four of each with the other four",
+        volume);
+}
+
+// Without features the surface takes nodes wherever they are; those of a layout in other units or
+// at another place lie far from it. Where there are features, an arc must lie along one.
+void check_is_near(const SurfaceMesh& mesh, const QuadLayout& layout,
+                   const std::vector<Vector3>& positions) {
+    const bool has_features =
+        std::ranges::any_of(mesh.edges(), [&](auto edge) { return mesh.data(edge).feature >= 0; });
+    if (has_features) {
+        throw TopologyError(
+            "layout: no sharp edge of the surface runs along an arc of the layout; the layout's "
+            "nodes must lie near the surface's corners and sharp edges, in the same units");
+    }
+    constexpr double reach = 0.25;
+    const double diagonal = bounding_box_diagonal(mesh);
+    const std::vector<int> valences = layout.valences();
+    for (int node = 0; node < layout.n_nodes(); ++node) {
+        if (valences[node] == 0) continue;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto v : mesh.vertices()) {
+            nearest = std::min(nearest, (mesh.point(v) - positions[node]).norm());
+        }
+        if (nearest <= reach * diagonal) continue;
+        throw TopologyError(
+            "layout: node {} at ({:.6g}, {:.6g}, {:.6g}) lies {:.3g} from the surface, more than a "
+            "quarter of its diagonal {:.3g}; the layout's nodes must lie near the surface, in the "
+            "same units",
+            layout.node_name(node), positions[node].x(), positions[node].y(), positions[node].z(),
+            nearest, diagonal);
+    }
 }
 
 double path_length(const SurfaceMesh& mesh, const std::vector<VertexHandle>& path) {
@@ -86,15 +144,12 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
             "same genus",
             boundary.layout.euler_characteristic(), chi);
     }
+    check_right_handed(boundary.layout, placed.positions);
     CuboidDecomposition result;
     result.mesh = mesh;
     std::vector<LayoutTie> feature_ties =
         tie_features(result.mesh, features, boundary.layout, placed.positions, most_reach);
-    if (feature_ties.empty()) {
-        throw TopologyError(
-            "layout: no sharp edge of the surface runs along an arc of the layout; the layout's "
-            "nodes must lie near the surface's corners and sharp edges, in the same units");
-    }
+    if (feature_ties.empty()) check_is_near(result.mesh, boundary.layout, placed.positions);
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::set<VertexHandle> held;

@@ -22,8 +22,10 @@ namespace couture::meshing {
 /// @param most_reach  no node moves farther to a feature, but for the length of an edge
 /// @return templates empty; sets are those of the layout; arcs should be as long as they are in it,
 ///         but on features, where they should stay as they are
-/// @throws TopologyError  if surface and layout have different Euler characteristics, or no feature
-///                        of the surface runs along arcs of the layout
+/// @throws TopologyError  if surface and layout have different Euler characteristics, if none of
+///                        the surface's features runs along arcs of the layout, or if it has no
+///                        features and a node lies far from it
+/// @throws GeometryError  if the cuboids lie inside out
 /// @throws TopologyError, GeometryError  if an arc can't be drawn: names its nodes
 [[nodiscard]] CuboidDecomposition place_layout(
     const SurfaceMesh& mesh, const Features& features, const PlacedLayout& placed,

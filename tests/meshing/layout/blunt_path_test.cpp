@@ -54,15 +54,21 @@ TEST_CASE("is_blunt: edges of prisms are blunt above 120 degrees", "[layout]") {
     CHECK(is_upright_blunt(4, true));
 }
 
-TEST_CASE("is_blunt: a path is blunt if a tenth of it is", "[layout]") {
-    // Once around an edge of the lid, at 90 degrees, and up or down an edge at 128 degrees.
-    constexpr int n = 7;
-    const SurfaceMesh prism = make_prism(n, false);
+TEST_CASE("is_blunt: the least corner along a path decides, from a tenth of it on", "[layout]") {
     const auto path = [](std::initializer_list<int> vertices) {
         std::vector<VertexHandle> handles;
         for (const int v : vertices) handles.emplace_back(v);
         return handles;
     };
-    CHECK_FALSE(is_blunt(prism, path({0, 1, 2, 3})));
-    CHECK(is_blunt(prism, path({0, 1, 2, 3, n + 3})));
+    // Around an edge of the lid, at 90 degrees: the corners of two cuboids have sin 45 degrees, and
+    // that of one sin 129 degrees is better, sin 150 degrees is worse.
+    const SurfaceMesh of_seven = make_prism(7, false);
+    CHECK_FALSE(is_blunt(of_seven, path({0, 1, 2, 3})));
+    CHECK_FALSE(is_blunt(of_seven, path({0, 1, 2, 3, 10})));
+    const SurfaceMesh of_twelve = make_prism(12, false);
+    CHECK_FALSE(is_blunt(of_twelve, path({0, 1, 2, 3})));
+    CHECK(is_blunt(of_twelve, path({0, 1, 2, 3, 15})));
+    // Less than a tenth: 22 edges of the lids, 11.4 long together, and one of length 1.
+    CHECK_FALSE(is_blunt(of_twelve, path({1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 0,
+                                          12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23})));
 }

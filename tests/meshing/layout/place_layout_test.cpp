@@ -1,12 +1,15 @@
 #include "meshing/layout/place_layout.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
 
 #include "iga/core/error.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/parts/parts.h"
 #include "meshing/pipeline/rounded_edges.h"
 #include "meshing/pipeline/solid_mesh.h"
+#include "tests/meshing/layout/layout_samples.h"
 
 using namespace couture;
 using namespace couture::meshing;
@@ -32,6 +35,21 @@ PlacedLayout cuboids_of(const std::string& name) {
                 placed.positions.push_back(x);
             }
             nodes[k] = node;
+        }
+    }
+    return placed;
+}
+
+// Cuboids of square section one behind the other inside the part torus.
+PlacedLayout ring_in_torus(int n_sections) {
+    PlacedLayout placed;
+    placed.layout = test::ring_of_cuboids(n_sections);
+    for (int section = 0; section < n_sections; ++section) {
+        const double angle = 2.0 * std::numbers::pi * section / n_sections;
+        for (int k = 0; k < 4; ++k) {
+            const double radius = 60.0 + ((k & 1) != 0 ? 14.0 : -14.0);
+            placed.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                                          (k & 2) != 0 ? -14.0 : 14.0);
         }
     }
     return placed;
@@ -83,6 +101,50 @@ TEST_CASE("place_layout: a part's own cuboids lie on its surface and become a ce
         CHECK(volume.volume->report.parameterization.validity == iga::Validity::valid);
         CHECK(volume.volume->report.max_distance < 0.001 * diagonal);
     }
+}
+
+TEST_CASE("place_layout: a smooth ball and a smooth ring are cut open along arcs", "[layout]") {
+    PlacedLayout placed;
+    TriangleSoup soup = make_part_surface("cube").soup;
+    bool is_ring = false;
+    SECTION("ball") {
+        const Vector3 centre = Vector3::Constant(50.0);
+        for (Vector3& x : soup.points) x = 50.0 * (x - centre).normalized();
+        placed.layout.n_nodes = 8;
+        placed.layout.cuboids = {{0, 1, 2, 3, 4, 5, 6, 7}};
+        for (int k = 0; k < 8; ++k) {
+            placed.positions.push_back(30.0 *
+                                       Vector3(2 * (k & 1) - 1, (k & 2) - 1, (k & 4) / 2 - 1));
+        }
+    }
+    SECTION("ring") {
+        is_ring = true;
+        soup = make_part_surface("torus").soup;
+        placed = ring_in_torus(6);
+    }
+    SurfaceMesh mesh = make_surface_mesh(soup);
+    const Features features = detect_features(mesh);
+    const CuboidDecomposition cuboids = place_layout(mesh, features, placed);
+    // One sheet below the whole wall.
+    CHECK(cuboids.volume.n_cuboids() == (is_ring ? 6 + 24 : 1 + 6));
+    SolidMeshOptions options;
+    options.element_size = 15.0;
+    const SolidMesh solid = mesh_solid(cuboids, options);
+    CHECK(solid.volume->report.parameterization.validity == iga::Validity::valid);
+    CHECK(solid.volume->report.quality.min_scaled_jacobian > 0.5);
+}
+
+TEST_CASE("place_layout: an outside layout far from a smooth surface is refused", "[layout]") {
+    const Solid torus = solid_of("torus");
+    PlacedLayout placed = ring_in_torus(4);
+    for (Vector3& x : placed.positions) x.x() += 1000.0;
+    CHECK_THROWS_WITH(place_layout(torus.mesh, torus.features, placed),
+                      Catch::Contains("lies ") &&
+                          Catch::Contains("must lie near the surface, in the same units"));
+    PlacedLayout mirrored = ring_in_torus(4);
+    for (Vector3& x : mirrored.positions) x.z() = -x.z();
+    CHECK_THROWS_WITH(place_layout(torus.mesh, torus.features, mirrored),
+                      Catch::Contains("lie inside out; corners must be numbered right-handed"));
 }
 
 TEST_CASE("place_layout: refuses layouts of another genus or place", "[layout]") {
