@@ -52,8 +52,8 @@ TEST_CASE("mesh family: members are done, those that fail are reported", "[drive
     CHECK(object["files"].size() == 6);
     // The same layout by the record of the reference alone.
     const auto again = run_couture(
-        "mesh pant --set X1=20 --edge-length 8 --element-size 20 --stage volume "
-        "--like o/reference_layout.json --json --out again",
+        "mesh pant --set X1=20 --edge-length 8 --stage volume --like o/reference_layout.json "
+        "--json --out again",
         folder.path());
     REQUIRE(again.exit_code == 0);
     CHECK(nlohmann::json::parse(again.output)["volume"]["signature"] == object["signature"]);
