@@ -8,6 +8,7 @@
 #include "drivers/family_results.h"
 #include "drivers/mesh_stages.h"
 #include "drivers/prepared_surface.h"
+#include "drivers/surface_input.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/core/text_hash.h"
@@ -61,6 +62,7 @@ class Family {
                 take_over(result.member, std::move(*volume));
                 continue;
             }
+            remove_earlier(members[m]);
             if (m == 0) {
                 // What was repeated from another reference is of no use.
                 earlier_.clear();
@@ -99,6 +101,11 @@ class Family {
         return folder_ / (member.name + "_volume.xml");
     }
 
+    // Of a member that failed.
+    [[nodiscard]] fs::path picture_file(const io::FamilyMember& member, MeshStage reached) const {
+        return folder_ / fmt::format("{}_failed_{}.png", member.name, to_string(reached));
+    }
+
     [[nodiscard]] fs::path record_file(const io::FamilyMember& member) const {
         return folder_ / (member.name + "_layout.json");
     }
@@ -115,6 +122,18 @@ class Family {
         const bool is_newer = member.surface.empty() ||
                               fs::last_write_time(volume) >= fs::last_write_time(member.surface);
         return is_newer ? &*found : nullptr;
+    }
+
+    // Files of an earlier run that this one may not replace.
+    void remove_earlier(const io::FamilyMember& member) const {
+        std::vector<fs::path> files{problems_file(member), volume_file(member)};
+        for (int stage = 0; stage <= static_cast<int>(MeshStage::hexes); ++stage) {
+            files.push_back(picture_file(member, static_cast<MeshStage>(stage)));
+        }
+        for (const fs::path& file : files) {
+            std::error_code ignored;
+            fs::remove(file, ignored);
+        }
     }
 
     // Nothing if its file was damaged since.
@@ -185,7 +204,7 @@ class Family {
             result.failure = error.what();
         }
         if (!result.failure.empty()) {
-            draw_failure(meshed.stages, result);
+            draw_failure(meshed.stages, result.member);
             return;
         }
         const auto certificate = [&](const iga::MultiPatch<3>& other) {
@@ -197,14 +216,21 @@ class Family {
         previous_ = meshed.volume();
     }
 
-    // The stage that a member reached.
-    void draw_failure(const MeshStages& stages, const MemberResult& result) {
-        const auto stage = reached_stage(stages);
-        if (!stage) return;
-        const fs::path path =
-            folder_ / fmt::format("{}_failed_{}.png", result.member.name, to_string(*stage));
+    // The stage that a member reached, or what is wrong with its surface.
+    void draw_failure(const MeshStages& stages, const io::FamilyMember& member) {
+        const fs::path problems = problems_file(member);
+        const bool has_problems = fs::exists(problems);
+        if (has_problems) files_.push_back(problems);
+        auto stage = reached_stage(stages);
+        if (!stage && !has_problems) return;
+        // A solid that was not cut is seen by its sharp edges.
+        if (stage == MeshStage::pants && stages.pants->curves.empty()) stage = MeshStage::features;
+        const fs::path path = picture_file(member, stage.value_or(MeshStage::surface));
         try {
-            write_stage_picture(path, stages, *stage);
+            io::Scene scene =
+                stage ? stage_scene(stages, *stage) : problems_scene(read_surface(deck_of(member)));
+            scene.title = path.stem().string();
+            io::render_png(path, scene);
             files_.push_back(path);
         } catch (const Error& error) {
             log::warn(error.what());
@@ -227,9 +253,11 @@ class Family {
                 fmt::format("not isotopological: its signature is {}, that of the reference {}",
                             result.signature, expected);
         } else if (parameterization.validity != iga::Validity::valid) {
-            result.failure = fmt::format("its volume is {} in patch {}",
-                                         iga::to_string(parameterization.validity),
-                                         parameterization.worst_patch);
+            result.failure = fmt::format(
+                "its volume is {} in patch {}, where det J has a Bernstein coefficient of "
+                "{:.3g}: it needs more elements (element_size) or a shape nearer to the reference",
+                iga::to_string(parameterization.validity), parameterization.worst_patch,
+                parameterization.min_coefficient);
         }
         if (!meshed.stages.part || !result.failure.empty()) return;
         result.homology = meshing::measure_homology(

@@ -139,8 +139,7 @@ std::map<std::pair<int, int>, std::string> names_of_edges(const PartSurface& par
 
 }  // namespace
 
-PreparedSurface prepare_surface(const io::MeshDeck& deck,
-                                const std::filesystem::path& problems_file) {
+io::DescribedSurface read_surface(const io::MeshDeck& deck) {
     if (!deck.part.empty() && (deck.fix || deck.fill_holes || deck.shell)) {
         throw InputError(
             "mesh: --fix, --fill-holes and --shell (fix, fill_holes, shell of [meshing]) are for "
@@ -148,14 +147,19 @@ PreparedSurface prepare_surface(const io::MeshDeck& deck,
             deck.part);
     }
     const std::string source = deck.part.empty() ? deck.surface.string() : deck.part;
-    const io::DescribedSurface described = load_surface("mesh", {.surface = source,
-                                                                 .overrides = {},
-                                                                 .parameters = deck.parameters,
-                                                                 .edge_length = deck.edge_length,
-                                                                 .units = deck.units,
-                                                                 .fix = deck.fix,
-                                                                 .fill_holes = deck.fill_holes,
-                                                                 .shell = deck.shell});
+    return load_surface("mesh", {.surface = source,
+                                 .overrides = {},
+                                 .parameters = deck.parameters,
+                                 .edge_length = deck.edge_length,
+                                 .units = deck.units,
+                                 .fix = deck.fix,
+                                 .fill_holes = deck.fill_holes,
+                                 .shell = deck.shell});
+}
+
+PreparedSurface prepare_surface(const io::MeshDeck& deck,
+                                const std::filesystem::path& problems_file) {
+    const io::DescribedSurface described = read_surface(deck);
     const std::optional<PartSurface>& part = described.part;
     PreparedSurface surface;
     if (!deck.like.empty()) surface.record = io::read_member_record(deck.like);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh_deck.h"
+#include "io/surface_info.h"
 #include "meshing/layout/layout_record.h"
 #include "meshing/parts/part_surface.h"
 #include "meshing/pipeline/outer_side_names.h"
@@ -33,11 +34,16 @@ struct PreparedSurface {
     std::optional<meshing::MemberRecord> record;
 };
 
-/// Reads or builds the surface that a deck names and opens the caps that it asks for; if it asks
+/// Reads or builds the surface that a deck names, and checks it.
+///
+/// @throws what load_surface throws; InputError  for a part that is to be repaired
+[[nodiscard]] io::DescribedSurface read_surface(const io::MeshDeck& deck);
+
+/// That surface, opened: it opens the caps that it asks for; if it asks
 /// for none and is to be cut like another member, those of a part that were open there.
 ///
 /// @param problems_file  see make_checked_mesh
-/// @throws what read_member_record, load_surface, make_checked_mesh and open_caps throw; InputError
+/// @throws what read_surface, read_member_record, make_checked_mesh and open_caps throw; InputError
 /// for names of caps
 ///         that the part does not have
 [[nodiscard]] PreparedSurface prepare_surface(const io::MeshDeck& deck,

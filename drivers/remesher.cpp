@@ -24,11 +24,12 @@ iga::MultiPatch<3> slide(const iga::MultiPatch<3>& deformed, const BoundaryFeatu
 iga::MultiPatch<3> from_surface(const iga::MultiPatch<3>& deformed,
                                 const BoundaryFeatures& features) {
     meshing::RemeshedSolid again = meshing::remesh_solid(deformed, features);
-    log::info(fmt::format(
-        "new mesh: from {} triangles, nodes moved by up to {:.3g}; boundary moved by {:.2e}, sharp "
-        "edges by {:.2e} of the diagonal, volume by {:.2e}",
-        again.n_triangles, again.relocation.largest_move, again.distance.surface,
-        again.distance.features, again.volume_change));
+    log::info(
+        fmt::format("new mesh: from {} triangles, nodes moved by up to {:.3g}, then {} rounds; "
+                    "boundary moved by "
+                    "{:.2e}, sharp edges by {:.2e} of the diagonal, volume by {:.2e}",
+                    again.n_triangles, again.relocation.largest_move, again.optimization.rounds,
+                    again.distance.surface, again.distance.features, again.volume_change));
     return std::move(again.volume);
 }
 

@@ -216,4 +216,40 @@ void write_problems(const std::filesystem::path& path, const io::DescribedSurfac
                   fmt::format("couture {} problems of {}", COUTURE_VERSION, surface.name));
 }
 
+io::Scene problems_scene(const io::DescribedSurface& surface) {
+    constexpr io::Color red{0.84, 0.15, 0.16};
+    const meshing::TriangleSoup& soup = surface.soup;
+    const auto flaws = meshing::flaw_of_triangle(surface.check, soup.triangles.size());
+    MatrixX vertices(static_cast<Eigen::Index>(soup.points.size()), 3);
+    for (std::size_t i = 0; i < soup.points.size(); ++i) {
+        vertices.row(static_cast<Eigen::Index>(i)) = soup.points[i].transpose();
+    }
+    io::Scene scene;
+    for (const bool is_flawed : {false, true}) {
+        std::vector<int> corners;
+        for (std::size_t t = 0; t < flaws.size(); ++t) {
+            if ((flaws[t] != 0) != is_flawed) continue;
+            const std::array<int, 3>& triangle = soup.triangles[t];
+            corners.insert(corners.end(), triangle.begin(), triangle.end());
+        }
+        if (corners.empty()) continue;
+        io::SurfacePiece piece;
+        piece.vertices = vertices;
+        piece.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+            corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
+        if (is_flawed) piece.color = red;
+        scene.surfaces.push_back(std::move(piece));
+    }
+    for (const meshing::SurfaceFlaw& flaw : surface.check.flaws) {
+        if (flaw.line.empty()) continue;
+        MatrixX points(static_cast<Eigen::Index>(flaw.line.size()), 3);
+        for (std::size_t k = 0; k < flaw.line.size(); ++k) {
+            points.row(static_cast<Eigen::Index>(k)) = flaw.line[k].transpose();
+        }
+        scene.curves.push_back(
+            {.points = std::move(points), .is_closed = flaw.is_closed, .color = red, .width = 4.0});
+    }
+    return scene;
+}
+
 }  // namespace couture::drivers

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/picture.h"
 #include "io/surface_info.h"
 #include "io/units.h"
 #include "meshing/surface/surface_mesh.h"
@@ -77,5 +78,8 @@ void require_file_or_part(const std::string& command, const std::string& name);
 /// triangle, 8 duplicate triangle, 9 self-intersection, 10 too few triangles, 11 no volume) and
 /// open loops and bad edges as polylines with that number as "kind".
 void write_problems(const std::filesystem::path& path, const io::DescribedSurface& surface);
+
+/// The surface with the triangles and lines of its problems in red.
+[[nodiscard]] io::Scene problems_scene(const io::DescribedSurface& surface);
 
 }  // namespace couture::drivers

@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 using namespace meshing;
 
 constexpr const char* format_name = "couture pants 2";
-constexpr const char* layout_format_name = "couture layout 2";
+constexpr const char* layout_format_name = "couture layout 3";
 constexpr const char* way_out =
     "take the NAME_pants.json or NAME_layout.json that 'couture mesh' wrote, or write it again by "
     "meshing that member";
@@ -86,6 +86,14 @@ class Node {
         std::vector<int> numbers;
         for (const Node& item : items()) numbers.push_back(item.count_below(n));
         return numbers;
+    }
+    [[nodiscard]] double part() const {
+        require(value_.is_number(), "a number");
+        const auto number = value_.get<double>();
+        if (!(number >= 0.0 && number <= 1.0)) {
+            throw InputError("{} = {}; it must lie in [0, 1]", path_, number);
+        }
+        return number;
     }
     [[nodiscard]] Vector3 vector() const {
         const auto numbers = items();
@@ -264,6 +272,7 @@ LayoutRecord read_layout(const Node& node) {
     }
     record.elements = node["elements"].counts_below(largest_number);
     record.base_elements = node["base_elements"].counts_below(largest_number);
+    record.area_part = node["area_part"].part();
     for (const auto& [name, sides] : node["sets"].entries()) {
         auto& set = record.sets[name];
         for (const Node& side : sides.items()) {
@@ -330,9 +339,13 @@ ordered_json to_json(const LayoutRecord& record) {
             set.push_back({{"cuboid", side.cuboid}, {"side", side.side}});
         }
     }
-    return {{"patches", std::move(patches)},         {"rotations", std::move(rotations)},
-            {"starts", std::move(starts)},           {"elements", record.elements},
-            {"base_elements", record.base_elements}, {"sets", std::move(sets)}};
+    return {{"patches", std::move(patches)},
+            {"rotations", std::move(rotations)},
+            {"starts", std::move(starts)},
+            {"elements", record.elements},
+            {"base_elements", record.base_elements},
+            {"area_part", record.area_part},
+            {"sets", std::move(sets)}};
 }
 
 ordered_json to_json(const PantsRecord& record, const char* format, const std::string& provenance) {

@@ -278,6 +278,7 @@ CuboidDecomposition repeat_cuboids(const SurfaceMesh& opened, const Features& fe
     result.record = record_layout(opened, patches, choice);
     result.record.elements = record.elements;
     result.record.base_elements = record.base_elements;
+    result.record.area_part = record.area_part;
     result.record.sets = record.sets;
     return result;
 }

@@ -32,6 +32,8 @@ struct LayoutRecord {
     /// The same before a tolerance asked for more: these divide elements of the wanted shape, so
     /// that the others stay where they are. Empty: as `elements`.
     std::vector<int> base_elements;
+    /// How nodes are placed, see NodeRelocationOptions::area_part; decided with the elements.
+    double area_part = 0.0;
     /// Of the volumetric layout.
     std::map<std::string, std::vector<CuboidSide>> sets;
 };

@@ -80,9 +80,7 @@ RemeshedSolid remesh_solid(const iga::MultiPatch<3>& deformed, const BoundaryFea
     options.volume.knots = knots_of_edges(deformed, cuboids.volume);
     SolidMesh solid = mesh_solid(std::move(cuboids), options);
     result.relocation = *solid.relocation;
-    result.report = solid.volume->report;
-    result.distance = *solid.distance;
-    const auto& parameterization = result.report.parameterization;
+    const auto& parameterization = solid.volume->report.parameterization;
     if (parameterization.validity != iga::Validity::valid) {
         throw GeometryError(
             "remesh: the new volume is {} in patch {}, its smallest Bernstein coefficient of det J "
@@ -95,6 +93,11 @@ RemeshedSolid remesh_solid(const iga::MultiPatch<3>& deformed, const BoundaryFea
         result.volume.patches[p] = {deformed.patches[p].space(),
                                     solid.volume->volume.patches[p].control_points()};
     }
+    // The map makes quads even on the mean, not the worst element good.
+    OptimizedVolume better = optimize_volume(result.volume, features);
+    result.volume = std::move(better.volume);
+    result.optimization = better.report;
+    result.distance = volume_distance(result.volume, solid.cuboids);
     result.volume_change = iga::volume(result.volume) / iga::volume(deformed) - 1.0;
     return result;
 }

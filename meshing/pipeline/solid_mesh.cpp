@@ -118,12 +118,16 @@ void check_n_elements(const LayoutCells& cells, const std::vector<int>& elements
     }
 }
 
-// Decides on elements and on names of outer sides.
+// Decides on elements, on how nodes are placed and on names of outer sides.
 void complete_record(CuboidDecomposition& cuboids, const LayoutCells& cells,
                      const SolidMeshOptions& options) {
     cuboids.record.elements = elements_by_size(cuboids, cells, options);
     cuboids.record.base_elements = cuboids.record.elements;
     check_n_elements(cells, cuboids.record.elements, options.element_size);
+    // Cells weigh by their area where splines are to come near the surface, not where they have a
+    // size of their own or the lengths that an outside layout gives them.
+    const bool has_lengths = options.element_size > 0.0 || !cuboids.arc_lengths.empty();
+    cuboids.record.area_part = has_lengths ? 0.0 : NodeRelocationOptions{}.area_part;
     if (!options.faces) return;
     for (auto& [name, sides] : name_outer_sides(cuboids, *options.faces)) {
         std::vector<CuboidSide>& set = cuboids.volume.sets[name];
@@ -168,11 +172,7 @@ RelocatedSamples relocate(const SolidMesh& solid, const std::vector<double>& cel
     NodeRelocationOptions relocation;
     relocation.cell_lengths = cell_lengths_of_arcs(solid, cell_lengths);
     relocation.max_iterations = options.max_relocations;
-    // Cells weigh by their area where splines are to come near the surface, not where they have a
-    // size of their own or the lengths that an outside layout gives them.
-    if (options.element_size > 0.0 || !solid.cuboids.arc_lengths.empty()) {
-        relocation.area_part = 0.0;
-    }
+    relocation.area_part = solid.cuboids.record.area_part;
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     for (int n = 2; n <= 4 && relocated.report.n_inverted > 0; n *= 2) {
         const RelocatedSamples small = relocate_nodes(

@@ -1,5 +1,11 @@
+#include <fmt/format.h>
+
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "io/atomic_file.h"
 #include "tests/drivers/run_program.h"
@@ -13,6 +19,60 @@ namespace {
 const std::string deck =
     "[geometry]\npart = \"pant\"\n[meshing]\nopen = \"caps\"\nedge_length = 8\nelement_size = 20\n"
     "[family]\nparameters = \"m.csv\"\n";
+
+/// A bar of 20 x 20 x 100, bent about its middle line by an angle in degrees, as OFF.
+std::string bent_bar(double degrees) {
+    constexpr std::array<int, 3> n{4, 4, 32};
+    const double angle = degrees * std::numbers::pi / 180.0;
+    std::map<std::array<int, 3>, int> numbers;
+    std::string points;
+    std::string triangles;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [entry, is_new] = numbers.try_emplace(at, static_cast<int>(numbers.size()));
+        if (is_new) {
+            const double x = 20.0 * at[0] / n[0] - 10.0;
+            const double z = 100.0 * at[2] / n[2];
+            const double radius = angle == 0.0 ? 0.0 : 100.0 / angle;
+            const double turn = angle * z / 100.0;
+            points += fmt::format(
+                "{:.9g} {:.9g} {:.9g}\n", angle == 0.0 ? x : (radius + x) * std::cos(turn) - radius,
+                20.0 * at[1] / n[1], angle == 0.0 ? z : (radius + x) * std::sin(turn));
+        }
+        return entry->second;
+    };
+    int n_triangles = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3;
+        const int b = (k + 2) % 3;
+        for (int cell = 0; cell < 2 * n[a] * n[b]; ++cell) {
+            const bool is_high = cell >= n[a] * n[b];
+            std::array<int, 3> at{};
+            at[k] = is_high ? n[k] : 0;
+            at[a] = cell % n[a];
+            at[b] = cell / n[a] % n[b];
+            std::array<int, 4> quad{};
+            for (int c = 0; c < 4; ++c) {
+                std::array<int, 3> corner = at;
+                corner[is_high ? a : b] += c == 1 || c == 2 ? 1 : 0;
+                corner[is_high ? b : a] += c >= 2 ? 1 : 0;
+                quad[c] = vertex(corner);
+            }
+            triangles += fmt::format("3 {} {} {}\n3 {} {} {}\n", quad[0], quad[1], quad[2], quad[0],
+                                     quad[2], quad[3]);
+            n_triangles += 2;
+        }
+    }
+    return fmt::format("OFF\n{} {} 0\n{}{}", numbers.size(), n_triangles, points, triangles);
+}
+
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        files.push_back(entry.path().filename().string());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
 
 }  // namespace
 
@@ -41,19 +101,14 @@ TEST_CASE("mesh family: members are done, those that fail are reported", "[drive
     CHECK(members[3]["midpoint_with_previous"] == "valid");
     CHECK(members[2]["status"] == "failed");
     CHECK_THAT(members[2]["reason"].get<std::string>(), Contains("X1 = 400"));
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o")) {
-        files.push_back(entry.path().filename().string());
-    }
-    std::sort(files.begin(), files.end());
-    CHECK(files == std::vector<std::string>{"a_volume.xml", "b_volume.xml", "f_family.png",
-                                            "f_members.json", "reference_layout.json",
-                                            "reference_volume.xml"});
+    CHECK(files_in(folder.path() / "o") ==
+          std::vector<std::string>{"a_volume.xml", "b_volume.xml", "f_family.png", "f_members.json",
+                                   "reference_layout.json", "reference_volume.xml"});
     CHECK(object["files"].size() == 6);
     // The same layout by the record of the reference alone.
     const auto again = run_couture(
-        "mesh pant --set X1=20 --edge-length 8 --element-size 20 --stage volume "
-        "--like o/reference_layout.json --json --out again",
+        "mesh pant --set X1=20 --edge-length 8 --stage volume --like o/reference_layout.json "
+        "--json --out again",
         folder.path());
     REQUIRE(again.exit_code == 0);
     CHECK(nlohmann::json::parse(again.output)["volume"]["signature"] == object["signature"]);
@@ -106,13 +161,62 @@ TEST_CASE("mesh family: of a member with other features a picture is left", "[dr
     CHECK_THAT(object["members"][1]["reason"].get<std::string>(),
                Contains("is closed and has no corner"));
     CHECK(object["members"][2]["status"] == "done");
-    CHECK(std::filesystem::file_size(folder.path() / "o/other_failed_pants.png") > 1000);
+    CHECK(std::filesystem::file_size(folder.path() / "o/other_failed_features.png") > 1000);
     CHECK_FALSE(std::filesystem::exists(folder.path() / "o/other_volume.xml"));
     // What failed is tried again, the others are not.
     const auto resumed = run_couture("mesh f.toml --out o --resume", folder.path());
     CHECK(resumed.exit_code == 1);
     CHECK_THAT(resumed.errors, Contains("reference is done already") && Contains("other failed") &&
                                    Contains("b is done already"));
+}
+
+TEST_CASE("mesh family: members that fold are reported with a picture, the others are done",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    const auto picture = [&](const char* name) {
+        return std::filesystem::file_size(folder.path() / "o" / name);
+    };
+    // The third folds between its elements, the fourth runs through itself.
+    for (const auto& [name, degrees] : {std::pair("straight", 0.0), std::pair("quarter", 90.0),
+                                        std::pair("hook", 270.0), std::pair("coil", 400.0)}) {
+        io::write_text(folder.path() / (std::string(name) + ".off"), bent_bar(degrees));
+    }
+    io::write_text(folder.path() / "m.csv", "surface\nhook.off\ncoil.off\nquarter.off\n");
+    io::write_text(folder.path() / "f.toml",
+                   "[geometry]\nsurface = \"straight.off\"\n[meshing]\nelement_size = 50\n"
+                   "[family]\nparameters = \"m.csv\"\n");
+    const auto result = run_couture("mesh f.toml --json --out o", folder.path());
+    CAPTURE(result.errors);
+    CHECK(result.exit_code == 1);
+    const auto object = nlohmann::json::parse(result.output);
+    CHECK(object["failed_members"] == 2);
+    const auto& members = object["members"];
+    CHECK(members[1]["certificate"] == "folded");
+    CHECK_THAT(members[1]["reason"].get<std::string>(),
+               Contains("its volume is folded in patch 0, where det J has"));
+    CHECK_THAT(members[2]["reason"].get<std::string>(),
+               Contains("coil.off can't be meshed") && Contains("self-intersection"));
+    CHECK(members[3]["status"] == "done");
+    CHECK(members[3]["midpoint_with_reference"] == "valid");
+    CHECK(files_in(folder.path() / "o") ==
+          std::vector<std::string>{"coil_failed_surface.png", "coil_problems.vtp", "f_members.json",
+                                   "hook_failed_volume.png", "quarter_volume.xml",
+                                   "reference_layout.json", "reference_volume.xml"});
+    CHECK(object["files"].size() == 7);
+    CHECK(picture("hook_failed_volume.png") > 1000);
+    CHECK(picture("coil_failed_surface.png") > 1000);
+
+    // Mended, and one that was done folds now: nothing of the earlier runs is left of either.
+    io::write_text(folder.path() / "hook.off", bent_bar(60.0));
+    io::write_text(folder.path() / "coil.off", bent_bar(-60.0));
+    io::write_text(folder.path() / "quarter.off", bent_bar(270.0));
+    const auto again = run_couture("mesh f.toml --out o", folder.path());
+    CHECK(again.exit_code == 1);
+    CHECK_THAT(again.output, Contains("3 of 4 members done"));
+    CHECK(files_in(folder.path() / "o") ==
+          std::vector<std::string>{"coil_volume.xml", "f_members.json", "hook_volume.xml",
+                                   "quarter_failed_volume.png", "reference_layout.json",
+                                   "reference_volume.xml"});
 }
 
 TEST_CASE("mesh family: an interrupted run leaves whole files and is resumed", "[drivers]") {

@@ -381,3 +381,36 @@ TEST_CASE("couture solve: from triangles to a run that is meshed again from its 
     CHECK_THAT(exact.errors, Contains("mesher = \"surface\"") && Contains("has weights") &&
                                  Contains("mesher = \"slide\""));
 }
+
+TEST_CASE("couture solve: meshed again from its surface, the worst element is better by 30 %",
+          "[drivers]") {
+    const TemporaryFolder folder;
+    write_deck(folder, half_seal_deck("part = \"half_seal\"\nparameters.divisions = 2", "\"cuts\"",
+                                      by_surface + R"([discretization]
+degree = 1
+geometry = "interpolated"
+)"));
+    // To 13.3 mm in four steps.
+    const std::string run =
+        "solve block.toml --set displacement.0.value=[-14,0,0] --set stepping.first_step=0.25 "
+        "--set stepping.largest_step=0.25 --set remeshing.at=[0.95] "
+        "--set material.rubber.bulk_modulus=";
+    const auto kappa = GENERATE(as<std::string>{}, "20", "10");
+    CAPTURE(kappa);
+    const auto result = run_couture(run + kappa + " --out a", folder.path());
+    CAPTURE(result.output, result.errors);
+    REQUIRE(result.exit_code == 0);
+    const Json summary = summary_of(folder, "a");
+    REQUIRE(summary["remeshings"] == 1);
+    const Json report = summary["history"][4]["remeshing"];
+    const auto part_left = [&](const char* key) {
+        return report[key]["after"].get<double>() / report[key]["before"].get<double>();
+    };
+    CHECK(part_left("shape_ratio") < 0.7);
+    CHECK(part_left("scaled_jacobian") > 0.97);
+    CHECK(part_left("energy") == Approx(1.0).epsilon(0.01));
+    CHECK(part_left("volume") == Approx(1.0).epsilon(0.002));
+    CHECK(report["reactions_after"]["cap"][0].get<double>() ==
+          Approx(report["reactions_before"]["cap"][0].get<double>()).epsilon(0.01));
+    CHECK(report["iterations"].get<int>() <= 4);
+}

@@ -87,6 +87,8 @@ TEST_CASE("layout record: what is written is read again", "[io]") {
                                                  io::built_in_templates())
                               .record;
     record.elements = {3, 4, 5};
+    record.base_elements = {3, 2, 5};
+    record.area_part = 0.25;
     record.rotations = {{2, 1}};
     record.starts = {{3, {0.1, -2.0, 1e-30}}};
     record.sets = {{"low", {{0, 2}, {0, 4}}}};
@@ -97,6 +99,8 @@ TEST_CASE("layout record: what is written is read again", "[io]") {
     CHECK(again.pants.landmarks.corners == cuts.landmarks.corners);
     REQUIRE(again.layout);
     CHECK(again.layout->elements == record.elements);
+    CHECK(again.layout->base_elements == record.base_elements);
+    CHECK(again.layout->area_part == record.area_part);
     CHECK(again.layout->rotations == record.rotations);
     CHECK(again.layout->starts == record.starts);
     CHECK(again.layout->sets == record.sets);
@@ -119,8 +123,21 @@ TEST_CASE("layout record: what is written is read again", "[io]") {
     }
     io::write_pants_record(path, cuts, "here");
     CHECK_FALSE(io::read_member_record(path).layout);
+    record.area_part = 1.5;
+    io::write_layout_record(path, cuts, record, "here");
+    CHECK_THROWS_WITH(io::read_member_record(path),
+                      Contains("layout.area_part = 1.5; it must lie in [0, 1]"));
+    record.area_part = 0.5;
     record.patches[0].match.nodes.pop_back();
     io::write_layout_record(path, cuts, record, "here");
     CHECK_THROWS_WITH(io::read_member_record(path),
                       Contains("layout.patches[0]: nodes of 0 loops, 7 corners and 12 curves"));
+    // It does not say how nodes were placed.
+    std::string old = io::read_text(path);
+    old.replace(old.find("couture layout 3"), 16, "couture layout 2");
+    io::write_text(path, old);
+    CHECK_THROWS_WITH(io::read_member_record(path),
+                      Contains("format is 'couture layout 2', expected 'couture pants 2' or "
+                               "'couture layout 3'; take the NAME_pants.json") &&
+                          Contains("or write it again by meshing that member"));
 }

@@ -95,6 +95,7 @@ TEST_CASE("remesh_solid: a deformed body in new splines of the same signature", 
         CHECK(iga::certify(patch).validity == iga::Validity::valid);
     }
     CHECK(iga::element_quality(again.volume).min_scaled_jacobian > 0.85);
+    CHECK(again.optimization.after.max_shape_ratio <= again.optimization.before.max_shape_ratio);
     CHECK(std::abs(again.volume_change) < 0.01);
     CHECK(again.distance.surface < 0.01);
     CHECK(again.distance.features < 0.01);
