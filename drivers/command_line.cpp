@@ -171,6 +171,26 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_option("model", exported->model, "the model (.rom)")->required();
     sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
 
+    const auto optimize = std::make_shared<RomOptimizeOptions>();
+    sub = add_command(*rom, command, "optimize", "find the lightest member within limits",
+                      [&command, optimize] { return run_rom_optimize(*optimize, command.common); });
+    sub->add_option("model", optimize->model, "the model (.rom)")->required();
+    sub->add_option("--stress-limit", optimize->stress_limit,
+                    "of the largest von Mises stress: a number or a text as '120 MPa'");
+    sub->add_option("--displacement-limit", optimize->displacement_limit,
+                    "of the largest displacement, as '0.2 mm'");
+    sub->add_option("--fix", optimize->fixed,
+                    "a dimension that stays, a load or a material value: NAME=VALUE (default: "
+                    "dimensions are free, all else is in the middle of its range)")
+        ->allow_extra_args(false);
+    constexpr int most_starts = 10'000;
+    sub->add_option("--starts", optimize->n_starts, "searches from different members (default: 8)")
+        ->check(CLI::Range(1, most_starts));
+    sub->add_option("--seed", optimize->seed, "of the starts (default: 1)");
+    sub->add_flag("--no-solve", optimize->no_solve, "do not solve the optimum in full");
+    sub->add_option("--out", optimize->out, "write the optimum's fields (VTU) into this folder");
+    sub->add_flag("--png", optimize->png, "draw the deformed optimum");
+
     const auto enrich = std::make_shared<RomEnrichOptions>();
     sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",
                       [&command, enrich] { return run_rom_enrich(*enrich, command.common); });

@@ -109,6 +109,22 @@ struct RomExportOptions {
     std::filesystem::path html;
 };
 
+struct RomOptimizeOptions {
+    std::filesystem::path model;
+    /// A number in the deck's units or with a unit; empty: without limit.
+    std::string stress_limit;
+    std::string displacement_limit;
+    /// NAME=VALUE of geometric parameters that stay, and of loads and materials.
+    std::vector<std::string> fixed;
+    int n_starts = 8;
+    std::uint64_t seed = 1;
+    /// Trusts the model: without a full solution of the optimum.
+    bool no_solve = false;
+    /// Where fields of the optimum are written; empty: nowhere, with `png` out/<model name>.
+    std::filesystem::path out;
+    bool png = false;
+};
+
 struct RomEnrichOptions {
     RomTrainOptions campaign;
     /// Wanted relative error of the displacement, as the model expects it.
@@ -204,6 +220,8 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
 int run_rom_export(const RomExportOptions& options, const CommonOptions& common);
 int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common);
 int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
+/// Without a member within the limits, or if it can't be solved in full: ExitCode::run_failed.
+int run_rom_optimize(const RomOptimizeOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);
