@@ -191,6 +191,22 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_option("--out", optimize->out, "write the optimum's fields (VTU) into this folder");
     sub->add_flag("--png", optimize->png, "draw the deformed optimum");
 
+    const auto sensitivity = std::make_shared<RomSensitivityOptions>();
+    sub = add_command(
+        *rom, command, "sensitivity", "say which parameters results depend on (Sobol indices)",
+        [&command, sensitivity] { return run_rom_sensitivity(*sensitivity, command.common); });
+    sub->add_option("model", sensitivity->model, "the model (.rom)")->required();
+    constexpr int fewest_samples = 16;
+    constexpr int most_samples = 10'000'000;
+    sub->add_option("--samples", sensitivity->n_samples,
+                    "N: the model is evaluated N times per free parameter, and 2 N times more "
+                    "(default: 1024)")
+        ->check(CLI::Range(fewest_samples, most_samples));
+    sub->add_option("--fix", sensitivity->fixed,
+                    "a parameter that stays: NAME=VALUE (default: all vary in their ranges)")
+        ->allow_extra_args(false);
+    sub->add_option("--seed", sensitivity->seed, "of the confidence intervals (default: 1)");
+
     const auto enrich = std::make_shared<RomEnrichOptions>();
     sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",
                       [&command, enrich] { return run_rom_enrich(*enrich, command.common); });

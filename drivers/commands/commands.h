@@ -125,6 +125,15 @@ struct RomOptimizeOptions {
     bool png = false;
 };
 
+struct RomSensitivityOptions {
+    std::filesystem::path model;
+    /// NAME=VALUE of parameters that stay; all others vary.
+    std::vector<std::string> fixed;
+    int n_samples = 1024;
+    /// Of the bootstrap.
+    std::uint64_t seed = 1;
+};
+
 struct RomEnrichOptions {
     RomTrainOptions campaign;
     /// Wanted relative error of the displacement, as the model expects it.
@@ -222,6 +231,7 @@ int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common)
 int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
 /// Without a member within the limits, or if it can't be solved in full: ExitCode::run_failed.
 int run_rom_optimize(const RomOptimizeOptions& options, const CommonOptions& common);
+int run_rom_sensitivity(const RomSensitivityOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);

@@ -222,4 +222,5 @@ range = [0.6, 1.4]
     check_command("train g.toml", "rom_train_schema.md");
     check_command("optimize out/g/g.rom --stress-limit 1000 --displacement-limit 1 --starts 2",
                   "rom_optimize_schema.md");
+    check_command("sensitivity out/g/g.rom --samples 16", "rom_sensitivity_schema.md");
 }

@@ -1,4 +1,4 @@
-// The lightest member, from a model's file to answers.
+// The lightest member and what results depend on, from a model's file to answers.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -182,4 +182,49 @@ TEST_CASE("rom optimize: limits that can't be kept, and what is wrong", "[driver
     CHECK_THAT(error_of("--stress-limit 60 --fix hole_radius=9"), Contains("lies outside of"));
     fs::remove(folder.path() / "f.toml");
     CHECK_THAT(error_of("--stress-limit 60"), Contains("the full solution (without --no-solve)"));
+}
+
+TEST_CASE("rom sensitivity: indices of a plate", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --out o", folder.path()).exit_code == 0);
+    const Json found = run_json("rom sensitivity o/f.rom --samples 256", folder.path());
+    CHECK(found["evaluations"] == 256 * 5);
+    REQUIRE(found["quantities"].size() == 3);
+    const Json& volume = found["quantities"][2];
+    CHECK(volume["name"] == "volume");
+    // The volume is thickness (16 - pi r^2 / 4): its indices are known, the load has none.
+    constexpr double pi = std::numbers::pi;
+    const double mean_t = 1.25;
+    const double var_t = 1.5 * 1.5 / 12.0;
+    const auto power_mean = [](int k) {
+        return (std::pow(1.4, k + 1) - std::pow(0.6, k + 1)) / (0.8 * (k + 1));
+    };
+    const double mean_a = 16.0 - pi / 4.0 * power_mean(2);
+    const double var_a = pi * pi / 16.0 * (power_mean(4) - power_mean(2) * power_mean(2));
+    const double V = var_t * mean_a * mean_a + var_a * mean_t * mean_t + var_t * var_a;
+    const double first[] = {var_a * mean_t * mean_t / V, var_t * mean_a * mean_a / V, 0.0};
+    CHECK(volume["mean"].get<double>() == Approx(mean_t * mean_a).epsilon(0.01));
+    CHECK(volume["variance"].get<double>() == Approx(V).epsilon(0.05));
+    for (int i = 0; i < 3; ++i) {
+        CHECK(volume["parameters"][i]["first"]["value"].get<double>() ==
+              Approx(first[i]).margin(0.03));
+    }
+    CHECK(volume["parameters"][2]["total"]["value"] == 0.0);
+    // Displacement and stress are proportional to the load over the thickness.
+    for (const int q : {0, 1}) {
+        CHECK(found["quantities"][q]["parameters"][1]["total"]["value"] > 0.3);
+        CHECK(found["quantities"][q]["parameters"][2]["total"]["value"] > 0.1);
+    }
+    const Json fixed =
+        run_json("rom sensitivity o/f.rom --samples 64 --fix load=20 --seed 3", folder.path());
+    CHECK(fixed["quantities"][0]["parameters"].size() == 2);
+    CHECK(value_of(fixed["fixed"], "load") == 20.0);
+    const auto text = run_couture("rom sensitivity o/f.rom --samples 64", folder.path());
+    CHECK_THAT(text.output, Contains("largest von Mises: mean") && Contains("320 evaluations"));
+    const auto none =
+        run_couture("rom sensitivity o/f.rom --fix load=20 --fix hole_radius=1 --fix thickness=1",
+                    folder.path());
+    CHECK(none.exit_code == 2);
+    CHECK_THAT(none.errors, Contains("all parameters are fixed"));
 }
