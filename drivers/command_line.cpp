@@ -166,10 +166,16 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_flag("--png", eval->png, "draw the deformed part");
 
     const auto exported = std::make_shared<RomExportOptions>();
-    sub = add_command(*rom, command, "export", "write a page that answers in a browser",
+    sub = add_command(*rom, command, "export",
+                      "write a page that answers in a browser, or a file for other programs",
                       [&command, exported] { return run_rom_export(*exported, command.common); });
     sub->add_option("model", exported->model, "the model (.rom)")->required();
-    sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+    CLI::Option* html =
+        sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+    sub->add_option("--binary", exported->binary,
+                    "instead of a page the model as rom/embed/couture_rom.h reads it, a header for "
+                    "C++ programs of any kind")
+        ->excludes(html);
 
     const auto optimize = std::make_shared<RomOptimizeOptions>();
     sub = add_command(*rom, command, "optimize", "find the lightest member within limits",

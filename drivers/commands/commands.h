@@ -105,8 +105,10 @@ struct RomEvalOptions {
 
 struct RomExportOptions {
     std::filesystem::path model;
-    /// The page that is written.
+    /// The page that is written; empty: <model name>.html.
     std::filesystem::path html;
+    /// Written instead, for rom/embed/couture_rom.h; may be empty.
+    std::filesystem::path binary;
 };
 
 struct RomOptimizeOptions {
