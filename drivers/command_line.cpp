@@ -166,10 +166,52 @@ void add_rom_commands(CLI::App& app, Command& command) {
     sub->add_flag("--png", eval->png, "draw the deformed part");
 
     const auto exported = std::make_shared<RomExportOptions>();
-    sub = add_command(*rom, command, "export", "write a page that answers in a browser",
+    sub = add_command(*rom, command, "export",
+                      "write a page that answers in a browser, or a file for other programs",
                       [&command, exported] { return run_rom_export(*exported, command.common); });
     sub->add_option("model", exported->model, "the model (.rom)")->required();
-    sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+    CLI::Option* html =
+        sub->add_option("--html", exported->html, "the page (default: <model name>.html)");
+    sub->add_option("--binary", exported->binary,
+                    "instead of a page the model as rom/embed/couture_rom.h reads it, a header for "
+                    "C++ programs of any kind")
+        ->excludes(html);
+
+    const auto optimize = std::make_shared<RomOptimizeOptions>();
+    sub = add_command(*rom, command, "optimize", "find the lightest member within limits",
+                      [&command, optimize] { return run_rom_optimize(*optimize, command.common); });
+    sub->add_option("model", optimize->model, "the model (.rom)")->required();
+    sub->add_option("--stress-limit", optimize->stress_limit,
+                    "of the largest von Mises stress: a number or a text as '120 MPa'");
+    sub->add_option("--displacement-limit", optimize->displacement_limit,
+                    "of the largest displacement, as '0.2 mm'");
+    sub->add_option("--fix", optimize->fixed,
+                    "a dimension that stays, a load or a material value: NAME=VALUE (default: "
+                    "dimensions are free, all else is in the middle of its range)")
+        ->allow_extra_args(false);
+    constexpr int most_starts = 10'000;
+    sub->add_option("--starts", optimize->n_starts, "searches from different members (default: 8)")
+        ->check(CLI::Range(1, most_starts));
+    sub->add_option("--seed", optimize->seed, "of the starts (default: 1)");
+    sub->add_flag("--no-solve", optimize->no_solve, "do not solve the optimum in full");
+    sub->add_option("--out", optimize->out, "write the optimum's fields (VTU) into this folder");
+    sub->add_flag("--png", optimize->png, "draw the deformed optimum");
+
+    const auto sensitivity = std::make_shared<RomSensitivityOptions>();
+    sub = add_command(
+        *rom, command, "sensitivity", "say which parameters results depend on (Sobol indices)",
+        [&command, sensitivity] { return run_rom_sensitivity(*sensitivity, command.common); });
+    sub->add_option("model", sensitivity->model, "the model (.rom)")->required();
+    constexpr int fewest_samples = 16;
+    constexpr int most_samples = 10'000'000;
+    sub->add_option("--samples", sensitivity->n_samples,
+                    "N: the model is evaluated N times per free parameter, and 2 N times more "
+                    "(default: 1024)")
+        ->check(CLI::Range(fewest_samples, most_samples));
+    sub->add_option("--fix", sensitivity->fixed,
+                    "a parameter that stays: NAME=VALUE (default: all vary in their ranges)")
+        ->allow_extra_args(false);
+    sub->add_option("--seed", sensitivity->seed, "of the confidence intervals (default: 1)");
 
     const auto enrich = std::make_shared<RomEnrichOptions>();
     sub = add_command(*rom, command, "enrich", "add samples where a model expects large errors",

@@ -49,13 +49,14 @@ void run_shards(const RomTrainOptions& options, int n_jobs, int n_threads,
         arguments.push_back(std::move(one));
     }
     const std::vector<int> codes = run_processes(arguments, watch);
+    constexpr int signal_base = 128;
     for (std::size_t j = 0; j < codes.size(); ++j) {
         if (codes[j] == ExitCode::done) continue;
         throw SolverError(
-            "rom: process {} of {} ended with exit code {}; what was made is kept: the same "
-            "command "
-            "goes on from there",
-            j + 1, codes.size(), codes[j]);
+            "rom: process {} of {} ended with exit code {}{}; what was made is kept: the same "
+            "command goes on from there",
+            j + 1, codes.size(), codes[j],
+            codes[j] > signal_base ? fmt::format(" (signal {})", codes[j] - signal_base) : "");
     }
 }
 
@@ -97,6 +98,8 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
     } else {
         fill_store(samples, reference, store, 0, 1);
     }
+    // All is made, nobody writes any more.
+    io::remove_leftovers(store.folder(), "");
     for (const RefusedSample& one : refused_samples(plan, store)) {
         log::warn(fmt::format("rom: refused: {}: {}", one.point, one.reason));
     }
@@ -116,6 +119,7 @@ std::optional<TrainedFile> train_model(const RomTrainOptions& options, const Com
     for (const rom::FieldModel& field : trained.model.parts().models) {
         if (const auto message = field.missing_modes()) log::warn("rom: " + *message);
     }
+    io::remove_leftovers(trained.file.parent_path(), trained.file.stem().string());
     io::write_reduced_model(trained.file,
                             {trained.model, samples.text(), model_provenance(samples)});
     return trained;

@@ -28,10 +28,12 @@ io::Deck deck_of(const io::ReducedModelFile& file, const std::filesystem::path& 
     return io::parse_deck(file.deck, name, all);
 }
 
-double read_value(const rom::Parameter& parameter, const std::string& text) {
+double read_value(const rom::Parameter& parameter, const std::string& text,
+                  const std::string& option) {
     const auto fail = [&](const std::string& why) {
-        throw InputError("--set {}={}: {}; write a number in {}, from {} to {}", parameter.name,
-                         text, why, parameter.unit.empty() ? "the deck's units" : parameter.unit,
+        throw InputError("{} {}={}: {}; write a number in {}, from {} to {}", option,
+                         parameter.name, text, why,
+                         parameter.unit.empty() ? "the deck's units" : parameter.unit,
                          parameter.lower, parameter.upper);
     };
     double value = 0.0;
@@ -99,16 +101,17 @@ void TrainedModel::require_job(const io::SnapshotStore& store) const {
                      path_.string(), store.folder().string());
 }
 
-VectorX TrainedModel::point_of(const std::vector<std::string>& settings) const {
+VectorX TrainedModel::point_of(const std::vector<std::string>& settings,
+                               const std::string& option) const {
     const rom::ParameterSpace& space = model().parameters();
     VectorX point = model().parts().reference_point;
     for (const std::string& setting : settings) {
         const std::size_t equals = setting.find('=');
         if (equals == std::string::npos) {
-            throw InputError("--set {}: must read NAME=VALUE", setting);
+            throw InputError("{} {}: must read NAME=VALUE", option, setting);
         }
         const int i = space.index_of(setting.substr(0, equals));
-        point[i] = read_value(space.parameters()[i], setting.substr(equals + 1));
+        point[i] = read_value(space.parameters()[i], setting.substr(equals + 1), option);
     }
     return point;
 }

@@ -35,9 +35,11 @@ class TrainedModel {
     /// The reference point with some values changed.
     ///
     /// @param settings  "NAME=VALUE", in the parameter's unit or with a unit of its own
+    /// @param option    that they were given by, for messages
     /// @throws InputError  for names that there are not, values that are no numbers or units of
     ///                     something else
-    [[nodiscard]] VectorX point_of(const std::vector<std::string>& settings) const;
+    [[nodiscard]] VectorX point_of(const std::vector<std::string>& settings,
+                                   const std::string& option = "--set") const;
 
     /// Warns of a point outside the training box.
     /// @throws InputError  for one that is by more than a fifth of a range outside, unless forced

@@ -163,6 +163,7 @@ void read_materials(Section& top, iga::Problem& problem) {
         material.patches = section.patches();
         if (is_elasticity) {
             read_elastic(section, material);
+            material.density = section.number("density", dimensions::density, positive);
         } else {
             section.require("conductivity", "a number > 0");
             material.conductivity =

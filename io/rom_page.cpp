@@ -232,13 +232,13 @@ Json grid_json(const iga::Space<3>& space, const rom::SampleGrid& grid, NodeNumb
 
 // ---- the rest
 
-bool is_poissons_ratio(const PageContent& content, int i_parameter) {
+bool is_poissons_ratio(const ExportContent& content, int i_parameter) {
     return std::any_of(content.materials.begin(), content.materials.end(), [&](const auto& one) {
         return one.follows_parameters && one.poissons_ratio.i_parameter == i_parameter;
     });
 }
 
-Json parameters_json(const rom::ReducedModelParts& parts, const PageContent& content) {
+Json parameters_json(const rom::ReducedModelParts& parts, const ExportContent& content) {
     Json list = Json::array();
     for (int i = 0; i < parts.parameters.size(); ++i) {
         const rom::Parameter& one = parts.parameters.parameters()[i];
@@ -253,12 +253,12 @@ Json parameters_json(const rom::ReducedModelParts& parts, const PageContent& con
     return list;
 }
 
-Json modulus_json(const PageModulus& modulus) {
+Json modulus_json(const ExportModulus& modulus) {
     return {{"value", modulus.value},
             {"parameter", modulus.i_parameter ? Json(*modulus.i_parameter) : Json()}};
 }
 
-Json material_json(const PageMaterial& material) {
+Json material_json(const ExportMaterial& material) {
     if (!material.follows_parameters) {
         return {{"stiffness", packed(MatrixX(material.stiffness))}};
     }
@@ -276,7 +276,7 @@ Json colors_json() {
     return packed("u8", bytes);
 }
 
-Json page_json(const rom::ReducedModel& model, const PageContent& content) {
+Json page_json(const rom::ReducedModel& model, const ExportContent& content) {
     const rom::ReducedModelParts& parts = model.parts();
     NodeNumbers number(model.n_nodes());
     Json grids = Json::array();
@@ -289,7 +289,7 @@ Json page_json(const rom::ReducedModel& model, const PageContent& content) {
             model_json(parts.models[i].coefficients(), model.kriging_inputs(static_cast<int>(i))));
     }
     Json materials = Json::array();
-    for (const PageMaterial& material : content.materials) {
+    for (const ExportMaterial& material : content.materials) {
         materials.push_back(material_json(material));
     }
     const std::vector<int>& nodes = number.nodes();
@@ -333,7 +333,7 @@ std::string without_tags(const std::string& json) {
 
 }  // namespace
 
-std::string make_rom_page(const rom::ReducedModel& model, const PageContent& content) {
+std::string make_rom_page(const rom::ReducedModel& model, const ExportContent& content) {
     constexpr std::string_view place = "/*COUTURE_MODEL*/";
     const std::size_t at = built_in_page_text.find(place);
     std::string page(built_in_page_text.substr(0, at));

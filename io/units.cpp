@@ -20,7 +20,6 @@ constexpr double inch = 0.0254;
 /// The international pound and standard gravity.
 constexpr double pound_force = 0.45359237 * 9.80665;
 constexpr Dimension time_dimension{.time = 1};
-constexpr Dimension mass{.length = -1, .force = 1, .time = 2};
 constexpr Dimension energy = dimensions::moment;
 constexpr Dimension power{.length = 1, .force = 1, .time = -1};
 
@@ -228,6 +227,7 @@ std::string Dimension::name() const {
         {moment, "a moment (force times length)"},
         {pressure, "a pressure"},
         {force_per_volume, "a force per volume"},
+        {density, "a density"},
         {io::dimensions::temperature, "a temperature"},
         {expansion, "a thermal expansion (1/temperature)"},
         {conductivity, "a conductivity"},

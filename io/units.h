@@ -28,6 +28,8 @@ constexpr Dimension force{.force = 1};
 constexpr Dimension moment{.length = 1, .force = 1};
 constexpr Dimension pressure{.length = -2, .force = 1};
 constexpr Dimension force_per_volume{.length = -3, .force = 1};
+constexpr Dimension density{.length = -4, .force = 1, .time = 2};
+constexpr Dimension mass{.length = -1, .force = 1, .time = 2};
 constexpr Dimension time{.time = 1};
 constexpr Dimension temperature{.temperature = 1};
 constexpr Dimension expansion{.temperature = -1};

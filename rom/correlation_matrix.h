@@ -21,6 +21,13 @@ class CorrelationMatrix {
                                                                    double nugget,
                                                                    bool has_traces = false);
 
+    /// Of one factor: lower, L L^T = K; empty for several.
+    [[nodiscard]] const MatrixX& cholesky_factor() const { return L_; }
+    /// Of several: eigenvectors of each, and the eigenvalues of K, the last factor fastest; empty
+    /// for one.
+    [[nodiscard]] const std::vector<MatrixX>& eigenvectors() const { return eigenvectors_; }
+    [[nodiscard]] const VectorX& eigenvalues() const { return eigenvalues_; }
+
     /// K^-1 B. @param B  n x m, rows with the last factor fastest
     [[nodiscard]] MatrixX solve(const MatrixX& B) const;
     [[nodiscard]] double log_determinant() const;

@@ -6,8 +6,8 @@
 #include "iga/core/error.h"
 #include "iga/core/parallel.h"
 #include "iga/mechanics/kinematics.h"
-#include "iga/post/stress.h"
 #include "rom/grid_kernel.h"
+#include "rom/stress_law.h"
 
 namespace couture::rom {
 
@@ -30,20 +30,6 @@ void check_grid(const iga::Space<3>& space, const SampleGrid& grid) {
                 line.empty() ? 0.0 : line.back(), knots.front(), knots.back());
         }
     }
-}
-
-/// Cauchy stress from the displacement's gradient by the undeformed position.
-Vector<6> stress_of(const iga::Material& material, const Matrix<3>& H,
-                    const Vector<6>& thermal_strain) {
-    if (material.hyperelastic) {
-        const Matrix<3> sigma = iga::cauchy_stress(iga::piola_stress(*material.hyperelastic, H), H);
-        Vector<6> stress;
-        stress << sigma(0, 0), sigma(1, 1), sigma(2, 2), sigma(1, 2), sigma(0, 2), sigma(0, 1);
-        return stress;
-    }
-    Vector<6> strain;
-    strain << H(0, 0), H(1, 1), H(2, 2), H(1, 2) + H(2, 1), H(0, 2) + H(2, 0), H(0, 1) + H(1, 0);
-    return material.stiffness * (strain - thermal_strain);
 }
 
 using StressLanes = std::array<Lanes, 6>;
@@ -89,8 +75,10 @@ class PointStress {
                 H(i / 3, i % 3) = point.H[i][lane];
             }
             const Vector3 x(point.x[0][lane], point.x[1][lane], point.x[2][lane]);
-            const Vector<6> s = stress_of(
-                material_, H, iga::thermal_strain(problem_, material_, patch_, load_case_, x));
+            const Vector<6> s =
+                StressLaw(material_, H,
+                          iga::thermal_strain(problem_, material_, patch_, load_case_, x))
+                    .stress();
             for (int a = 0; a < 6; ++a) {
                 stress[a][lane] = s[a];
             }

@@ -50,6 +50,7 @@ GridKernel::GridKernel(const iga::Space<3>& space, const SampleGrid& grid) : pat
     const std::array<int, 3> n = grid.sizes();
     const std::array<int, 3> point_strides = {1, n[0], n[0] * n[1]};
     directions_ = order_of(n);
+    orientation_ = directions_[1] == (directions_[0] + 1) % 3 ? 1.0 : -1.0;
     for (int k = 0; k < 3; ++k) {
         strides_[k] = point_strides[directions_[k]];
         tables_.emplace_back(tensor.knots[directions_[k]], grid.parameters[directions_[k]]);
@@ -194,7 +195,7 @@ void GridKernel::divide(FieldLanes& fields, std::size_t i_denominator) const {
     }
 }
 
-PointLanes GridKernel::to_point(const FieldLanes& fields) {
+PointLanes GridKernel::to_point(const FieldLanes& fields) const {
     PointLanes point;
     for (int c = 0; c < 3; ++c) {
         point.x[c] = fields[0][c];
@@ -214,6 +215,7 @@ PointLanes GridKernel::to_point(const FieldLanes& fields) {
     }
     const Lanes det =
         J(0, 0) * cofactor[0][0] + J(0, 1) * cofactor[0][1] + J(0, 2) * cofactor[0][2];
+    point.det_J = orientation_ * det;
     const Lanes inverse_det = 1.0 / det;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {

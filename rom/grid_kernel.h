@@ -20,6 +20,8 @@ struct PointLanes {
     std::array<Lanes, 3> u;
     /// du_i / dx_j at 3 i + j.
     std::array<Lanes, 9> H;
+    /// Of dx / dxi.
+    Lanes det_J;
 };
 
 /// Functions of one direction at the points of a line.
@@ -79,11 +81,13 @@ class GridKernel {
     using FieldLanes = std::array<std::array<Lanes, n_fields>, 4>;
     [[nodiscard]] FieldLanes contract_across_0(int i_point, const Buffer<Lanes>& in) const;
     void divide(FieldLanes& fields, std::size_t i_denominator) const;
-    [[nodiscard]] static PointLanes to_point(const FieldLanes& fields);
+    [[nodiscard]] PointLanes to_point(const FieldLanes& fields) const;
 
     int patch_;
     /// Directions: across 0, across 1, along.
     std::array<int, 3> directions_{};
+    /// 1 if these are a cyclic order of 0, 1, 2, else -1.
+    double orientation_ = 1.0;
     std::array<int, 3> strides_{};
     int n_along_ = 0;
     std::vector<LineTable> tables_;

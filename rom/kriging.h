@@ -72,6 +72,11 @@ class Kriging {
     [[nodiscard]] const VectorX& trend_coefficients() const { return beta_; }
     /// Of the process, that correlations multiply.
     [[nodiscard]] double process_variance() const { return variance_; }
+    /// K, K^-1 F and L with L L^T = F^T K^-1 F, F being the trend functions at the points:
+    /// what variances are made of.
+    [[nodiscard]] const CorrelationMatrix& correlation_matrix() const { return *K_; }
+    [[nodiscard]] const MatrixX& K_inverse_F() const { return K_inverse_F_; }
+    [[nodiscard]] const MatrixX& trend_factor() const { return trend_factor_; }
     /// @param point  n_parameters values; outside the unit cube it extrapolates
     [[nodiscard]] Prediction predict(const VectorX& point) const;
     /// predict(point).value at little cost.

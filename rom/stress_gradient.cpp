@@ -7,70 +7,11 @@
 #include "iga/core/format.h"
 #include "iga/mechanics/kinematics.h"
 #include "iga/post/stress.h"
+#include "rom/stress_law.h"
 
 namespace couture::rom {
 
 namespace {
-
-Vector<6> to_strain(const Matrix<3>& H) {
-    return (Vector<6>() << H(0, 0), H(1, 1), H(2, 2), H(1, 2) + H(2, 1), H(0, 2) + H(2, 0),
-            H(0, 1) + H(1, 0))
-        .finished();
-}
-
-Vector<6> to_voigt(const Matrix<3>& s) {
-    return (Vector<6>() << s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2), s(0, 1)).finished();
-}
-
-/// Stress at a displacement gradient, and its change with that gradient.
-class StressLaw {
-  public:
-    StressLaw(const iga::Material& material, const Matrix<3>& H) : material_(material), H_(H) {
-        if (!material.hyperelastic) {
-            stress_ = material.stiffness * to_strain(H);
-            return;
-        }
-        F_ += H;
-        P_ = iga::piola_stress(*material.hyperelastic, H);
-        tangent_ = iga::piola_tangent(*material.hyperelastic, H);
-        sigma_ = iga::cauchy_stress(P_, H);
-        stress_ = to_voigt(sigma_);
-    }
-
-    [[nodiscard]] const Vector<6>& stress() const { return stress_; }
-
-    [[nodiscard]] Vector<6> change(const Matrix<3>& dH) const {
-        if (!material_.hyperelastic) {
-            return material_.stiffness * to_strain(dH);
-        }
-        const Vector<9> flat = dH.transpose().reshaped();
-        const Vector<9> dP = tangent_ * flat;
-        const Matrix<3> dP_tensor = dP.reshaped(3, 3).transpose();
-        const double J = F_.determinant();
-        return to_voigt((dP_tensor * F_.transpose() + P_ * dH.transpose()) / J -
-                        sigma_ * (F_.inverse() * dH).trace());
-    }
-
-  private:
-    const iga::Material& material_;
-    Matrix<3> H_;
-    Matrix<3> F_ = Matrix<3>::Identity();
-    Matrix<3> P_ = Matrix<3>::Zero();
-    Matrix<3> sigma_ = Matrix<3>::Zero();
-    Matrix<9> tangent_ = Matrix<9>::Zero();
-    Vector<6> stress_ = Vector<6>::Zero();
-};
-
-/// Derivative of the von Mises stress by the stress.
-Vector<6> von_mises_slopes(const Vector<6>& s, double von_mises) {
-    if (von_mises == 0.0) {
-        return Vector<6>::Zero();
-    }
-    const double mean = (s[0] + s[1] + s[2]) / 3.0;
-    Vector<6> slopes = 3.0 * s / von_mises;
-    slopes.head<3>() = 1.5 * (s.head<3>().array() - mean) / von_mises;
-    return slopes;
-}
 
 /// Rows of the patch's functions, functions x 3. @param field  3 n_nodes numbers
 Eigen::Matrix<double, Eigen::Dynamic, 3> rows_of(const Eigen::Ref<const VectorX>& field,
@@ -135,7 +76,7 @@ StressGradient stress_gradient(const ReducedModel& model, const Evaluation& eval
     }
     const Matrix<3> J_inverse = J.inverse();
     const Matrix<3> H = U.transpose() * basis.gradients * J_inverse;
-    const StressLaw law(material, H);
+    const StressLaw law(material, H, Vector<6>::Zero());
 
     const int n = model.parameters().size();
     StressGradient result;
@@ -152,11 +93,11 @@ StressGradient stress_gradient(const ReducedModel& model, const Evaluation& eval
         result.position_gradient.col(p) = dX.transpose() * basis.values;
         result.stress_gradient.col(p) = law.change(dH);
         if (!stiffness_slopes.empty()) {
-            result.stress_gradient.col(p) += stiffness_slopes[p] * to_strain(H);
+            result.stress_gradient.col(p) += stiffness_slopes[p] * small_strain(H);
         }
     }
     result.von_mises_gradient =
-        result.stress_gradient.transpose() * von_mises_slopes(result.stress, result.von_mises);
+        result.stress_gradient.transpose() * von_mises_slopes(result.stress);
     return result;
 }
 

@@ -105,8 +105,35 @@ struct RomEvalOptions {
 
 struct RomExportOptions {
     std::filesystem::path model;
-    /// The page that is written.
+    /// The page that is written; empty: <model name>.html.
     std::filesystem::path html;
+    /// Written instead, for rom/embed/couture_rom.h; may be empty.
+    std::filesystem::path binary;
+};
+
+struct RomOptimizeOptions {
+    std::filesystem::path model;
+    /// A number in the deck's units or with a unit; empty: without limit.
+    std::string stress_limit;
+    std::string displacement_limit;
+    /// NAME=VALUE of geometric parameters that stay, and of loads and materials.
+    std::vector<std::string> fixed;
+    int n_starts = 8;
+    std::uint64_t seed = 1;
+    /// Trusts the model: without a full solution of the optimum.
+    bool no_solve = false;
+    /// Where fields of the optimum are written; empty: nowhere, with `png` out/<model name>.
+    std::filesystem::path out;
+    bool png = false;
+};
+
+struct RomSensitivityOptions {
+    std::filesystem::path model;
+    /// NAME=VALUE of parameters that stay; all others vary.
+    std::vector<std::string> fixed;
+    int n_samples = 1024;
+    /// Of the bootstrap.
+    std::uint64_t seed = 1;
 };
 
 struct RomEnrichOptions {
@@ -204,6 +231,9 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common);
 int run_rom_export(const RomExportOptions& options, const CommonOptions& common);
 int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common);
 int run_rom_merge(const RomMergeOptions& options, const CommonOptions& common);
+/// Without a member within the limits, or if it can't be solved in full: ExitCode::run_failed.
+int run_rom_optimize(const RomOptimizeOptions& options, const CommonOptions& common);
+int run_rom_sensitivity(const RomSensitivityOptions& options, const CommonOptions& common);
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common);
 int run_bench(const BenchCommandOptions& options, const CommonOptions& common);
 int run_verify(const VerifyOptions& options, const CommonOptions& common);

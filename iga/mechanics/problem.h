@@ -29,6 +29,8 @@ struct Material {
     std::optional<Hyperelastic> hyperelastic;
     /// Strain per degree along the axes.
     Vector3 thermal_expansion = Vector3::Zero();
+    /// Mass per volume, force time^2 / length^4.
+    std::optional<double> density;
     /// Poisson: flux = -conductivity * gradient.
     double conductivity = 1.0;
 };

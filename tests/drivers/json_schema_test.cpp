@@ -192,6 +192,22 @@ key = "material.steel.poissons_ratio"
 range = [0.2, 0.35]
 levels = 3
 )");
+    io::write_text(folder.path() / "g.toml", R"([geometry]
+part = "plate_with_hole_3d"
+[material.steel]
+youngs_modulus = 210e3
+poissons_ratio = 0.3
+density = 7.85e-9
+[[symmetry]]
+on = ["cut_x", "cut_y", "z_low"]
+[[traction]]
+on = "x_high"
+value = [10, 0, 0]
+[rom]
+[[rom.parameter]]
+key = "geometry.parameters.hole_radius"
+range = [0.6, 1.4]
+)");
     const auto check_command = [&](const std::string& command, const std::string& schema) {
         const auto result = tests::run_couture("rom " + command + " --json", folder.path());
         CAPTURE(command, result.errors);
@@ -203,4 +219,8 @@ levels = 3
     check_command("train f.toml", "rom_train_schema.md");
     check_command("validate f.toml -n 3 --galerkin", "rom_validate_schema.md");
     check_command("eval out/f/f.rom --solve --galerkin", "rom_eval_schema.md");
+    check_command("train g.toml", "rom_train_schema.md");
+    check_command("optimize out/g/g.rom --stress-limit 1000 --displacement-limit 1 --starts 2",
+                  "rom_optimize_schema.md");
+    check_command("sensitivity out/g/g.rom --samples 16", "rom_sensitivity_schema.md");
 }

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "drivers/rom_page_data.h"
+#include "drivers/rom_export_content.h"
 #include "io/atomic_file.h"
 #include "rom/field_sampler.h"
 #include "tests/drivers/run_program.h"

@@ -1,8 +1,11 @@
 // Reduced models, from a deck to answers.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
+#include "rom/designs.h"
 #include "tests/drivers/run_program.h"
 
 using namespace couture;
@@ -117,14 +120,8 @@ TEST_CASE("rom: stores and models are the same however the work was split", "[dr
     io::write_text(folder.path() / "f.toml", deck);
     REQUIRE(run_couture("rom train f.toml --jobs 1 --out a", folder.path()).exit_code == 0);
     REQUIRE(run_couture("rom train f.toml --jobs 2 --out b", folder.path()).exit_code == 0);
-    // By shards, the second killed at several moments on the way.
+    // By shards in one folder.
     REQUIRE(run_couture("rom train f.toml --shard 2/2 --out c", folder.path()).exit_code == 0);
-    for (const char* seconds : {"0.04", "0.06", "0.08", "0.1", "0.12", "0.15", "0.2"}) {
-        static_cast<void>(run_couture("--version", folder.path(),
-                                      std::string("timeout -s KILL ") + seconds + " " +
-                                          COUTURE_PROGRAM +
-                                          " rom train f.toml --out c --quiet; true"));
-    }
     REQUIRE(run_couture("rom train f.toml --out c", folder.path()).exit_code == 0);
     // Two shards apart, put together.
     REQUIRE(run_couture("rom train f.toml --shard 1/2 --out d1", folder.path()).exit_code == 0);
@@ -142,6 +139,113 @@ TEST_CASE("rom: stores and models are the same however the work was split", "[dr
         CHECK((io::read_text(folder.path() / other / "f.rom") ==
                io::read_text(folder.path() / "a/f.rom")));
     }
+}
+
+TEST_CASE("rom: training that was killed at any moment goes on to the same bits", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    const auto start = std::chrono::steady_clock::now();
+    REQUIRE(run_couture("rom train f.toml --out a", folder.path()).exit_code == 0);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto snapshots = contents(folder.path() / "a/snapshots");
+    const std::string trained = io::read_text(folder.path() / "a/f.rom");
+    // One moment in each tenth of the run.
+    constexpr int n_moments = 10;
+    const MatrixX moments = rom::random_design(1, n_moments, 20);
+    int n_killed = 0;
+    for (int i = 0; i < n_moments; ++i) {
+        const std::string out = "k" + std::to_string(i);
+        const double moment = seconds * (i + moments(i, 0)) / n_moments;
+        const auto killed =
+            run_couture("--version", folder.path(),
+                        "exec timeout -s KILL " + std::to_string(moment) + " " + COUTURE_PROGRAM +
+                            " rom train f.toml --quiet --out " + out);
+        n_killed += killed.exit_code == 0 ? 0 : 1;
+        CAPTURE(i, moment, killed.exit_code);
+        const auto again = run_couture("rom train f.toml --out " + out, folder.path());
+        CAPTURE(again.errors);
+        REQUIRE(again.exit_code == 0);
+        CHECK((contents(folder.path() / out / "snapshots") == snapshots));
+        CHECK((io::read_text(folder.path() / out / "f.rom") == trained));
+        CHECK(contents(folder.path() / out).size() == 1);
+    }
+    // Other programs may slow the first run down, the others not: not all need be cut.
+    CHECK(n_killed >= n_moments / 2);
+}
+
+TEST_CASE("rom: a killed process of several is named, and nothing is lost", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --out a", folder.path()).exit_code == 0);
+    // The program runs with a shell beside it that kills its youngest child as soon as there is
+    // one.
+    const auto result =
+        run_couture("--version", folder.path(),
+                    std::string(COUTURE_PROGRAM) +
+                        " rom train f.toml --jobs 2 --out b & parent=$!; victim=; "
+                        "while kill -0 $parent 2>/dev/null && test -z \"$victim\"; do "
+                        "victim=$(ps -o pid= --ppid $parent | tail -n 1); done; "
+                        "kill -9 $victim; wait $parent; exit $?; true");
+    CAPTURE(result.errors);
+    CHECK(result.exit_code == 1);
+    CHECK_THAT(result.errors, Contains("of 2 ended with exit code 137 (signal 9)") &&
+                                  Contains("the same command goes on from there"));
+    CHECK_FALSE(fs::exists(folder.path() / "b/f.rom"));
+    REQUIRE(run_couture("rom train f.toml --jobs 2 --out b", folder.path()).exit_code == 0);
+    CHECK((contents(folder.path() / "b/snapshots") == contents(folder.path() / "a/snapshots")));
+    CHECK((io::read_text(folder.path() / "b/f.rom") == io::read_text(folder.path() / "a/f.rom")));
+}
+
+TEST_CASE("rom: a full disk is an error, and nothing is lost", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --out a", folder.path()).exit_code == 0);
+    const auto snapshots = contents(folder.path() / "a/snapshots");
+    const std::string trained = io::read_text(folder.path() / "a/f.rom");
+    const std::size_t largest = std::max_element(snapshots.begin(), snapshots.end(),
+                                                 [](const auto& one, const auto& other) {
+                                                     return one.second.size() < other.second.size();
+                                                 })
+                                    ->second.size();
+    REQUIRE(trained.size() > 1024 + largest);
+    const auto run = [&](const std::string& command, std::size_t bytes) {
+        // In blocks of 512 bytes.
+        return run_couture(command, folder.path(), "ulimit -f " + std::to_string(bytes / 512));
+    };
+    // No room for the reference member.
+    const auto first = run("rom train f.toml --out b", 1024);
+    CHECK(first.exit_code == 2);
+    CHECK_THAT(first.errors, Contains("b/snapshots/") && Contains("can't be written"));
+    // With it, no room for solutions; then for them, but not for the model.
+    fs::remove_all(folder.path() / "b");
+    fs::create_directories(folder.path() / "b/snapshots");
+    for (const char* name : {"plan.json", "reference.h5"}) {
+        fs::copy(folder.path() / "a/snapshots" / name, folder.path() / "b/snapshots" / name);
+    }
+    const std::size_t small = snapshots.at("solution_0000_00.h5").size() - 512;
+    const auto early = run("rom train f.toml --jobs 1 --out b", small);
+    CAPTURE(early.errors);
+    CHECK(early.exit_code == 2);
+    CHECK_THAT(early.errors, Contains("b/snapshots/") && Contains("can't be written"));
+    CHECK_FALSE(fs::exists(folder.path() / "b/f.rom"));
+    const auto jobs = run("rom train f.toml --jobs 2 --out b", small);
+    CAPTURE(jobs.errors);
+    CHECK(jobs.exit_code == 1);
+    CHECK_THAT(jobs.errors, Contains("can't be written") && Contains("what was made is kept"));
+    const auto late = run("rom train f.toml --jobs 1 --out b", largest + 1024);
+    CAPTURE(late.errors);
+    CHECK(late.exit_code == 2);
+    CHECK_THAT(late.errors, Contains("f.rom") && Contains("can't be written"));
+    // No sample was refused for it, and no piece of a file is left.
+    CHECK((contents(folder.path() / "b/snapshots") == snapshots));
+    CHECK(contents(folder.path() / "b").empty());
+    REQUIRE(run_couture("rom train f.toml --out b", folder.path()).exit_code == 0);
+    CHECK((io::read_text(folder.path() / "b/f.rom") == trained));
+    // The model that was there stays when another can't be written.
+    const auto kept = run("rom validate f.toml --out b -n 2 --jobs 1", largest + 1024);
+    CHECK(kept.exit_code == 2);
+    CHECK((io::read_text(folder.path() / "b/f.rom") == trained));
 }
 
 TEST_CASE("rom: samples are added until the expected error is small", "[drivers]") {

@@ -1,4 +1,4 @@
-#include "drivers/rom_page_data.h"
+#include "drivers/rom_export_content.h"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace {
 /// Largest number of cells per element and direction.
 constexpr int most_cells = 4;
 
-void set_grids(io::PageContent& content, const iga::Space<3>& space, int most_points) {
+void set_grids(io::ExportContent& content, const iga::Space<3>& space, int most_points) {
     for (content.n_cells = most_cells;; --content.n_cells) {
         content.grids =
             rom::make_sample_grids(space, rom::SampleRegion::outer_sides, content.n_cells);
@@ -46,12 +46,13 @@ std::optional<int> parameter_of(const io::RomSection& section, const std::string
     return {};
 }
 
-io::PageModulus modulus_of(double value, std::optional<int> i_parameter, const VectorX& reference) {
+io::ExportModulus modulus_of(double value, std::optional<int> i_parameter,
+                             const VectorX& reference) {
     return {i_parameter ? value / reference[*i_parameter] : value, i_parameter};
 }
 
-io::PageMaterial page_material(const iga::Material& material, const io::RomSection& section,
-                               const VectorX& reference) {
+io::ExportMaterial export_material(const iga::Material& material, const io::RomSection& section,
+                                   const VectorX& reference) {
     const std::string prefix = "material." + material.name + ".";
     const auto E = parameter_of(section, prefix + "youngs_modulus");
     const auto nu = parameter_of(section, prefix + "poissons_ratio");
@@ -60,9 +61,9 @@ io::PageMaterial page_material(const iga::Material& material, const io::RomSecti
             modulus_of(constants.poissons_ratio, nu, reference)};
 }
 
-iga::ElasticStiffness stiffness_at(const io::PageMaterial& material, const VectorX& point) {
+iga::ElasticStiffness stiffness_at(const io::ExportMaterial& material, const VectorX& point) {
     if (!material.follows_parameters) return material.stiffness;
-    const auto value = [&](const io::PageModulus& one) {
+    const auto value = [&](const io::ExportModulus& one) {
         return one.i_parameter ? one.value * point[*one.i_parameter] : one.value;
     };
     return iga::isotropic_stiffness(value(material.youngs_modulus), value(material.poissons_ratio));
@@ -70,7 +71,7 @@ iga::ElasticStiffness stiffness_at(const io::PageMaterial& material, const Vecto
 
 std::string why_no_stress(const iga::Problem& problem) {
     if (!problem.temperatures.empty()) {
-        return "the deck has temperatures, whose strains the page does not compute";
+        return "the deck has temperatures, whose strains are not computed";
     }
     for (const iga::Material& material : problem.materials) {
         if (material.hyperelastic) {
@@ -82,7 +83,7 @@ std::string why_no_stress(const iga::Problem& problem) {
 
 /// Compares with the deck's own materials at corners of the box.
 std::string why_other_stiffness(const TrainedModel& trained,
-                                const std::vector<io::PageMaterial>& materials) {
+                                const std::vector<io::ExportMaterial>& materials) {
     constexpr double rounding = 1e-9;
     const rom::ParameterSpace& space = trained.model().parameters();
     for (const double part : {0.0, 0.37, 1.0}) {
@@ -101,25 +102,37 @@ std::string why_other_stiffness(const TrainedModel& trained,
     return {};
 }
 
-}  // namespace
-
-io::PageContent page_content(const TrainedModel& trained, int most_points) {
+/// All but the grids.
+io::ExportContent content_of(const TrainedModel& trained) {
     const rom::ReducedModel& model = trained.model();
     const VectorX& reference = model.parts().reference_point;
     const io::Deck deck = trained.deck_at(reference);
-    io::PageContent content;
+    io::ExportContent content;
     content.title = deck.title.empty() ? trained.path().stem().string() : deck.title;
     const auto [length, force, pressure] = deck.units.unit_names();
     content.length_unit = length;
     content.stress_unit = pressure;
-    set_grids(content, *model.space(), most_points);
     content.no_stress = why_no_stress(deck.problem);
     if (!content.no_stress.empty()) return content;
     for (const iga::Material& material : deck.problem.materials) {
-        content.materials.push_back(page_material(material, trained.section(), reference));
+        content.materials.push_back(export_material(material, trained.section(), reference));
     }
     content.no_stress = why_other_stiffness(trained, content.materials);
     content.material_of_patch = iga::materials_of_patches(deck.problem, model.space()->n_patches());
+    return content;
+}
+
+}  // namespace
+
+io::ExportContent page_content(const TrainedModel& trained, int most_points) {
+    io::ExportContent content = content_of(trained);
+    set_grids(content, *trained.model().space(), most_points);
+    return content;
+}
+
+io::ExportContent volume_content(const TrainedModel& trained) {
+    io::ExportContent content = content_of(trained);
+    content.grids = rom::make_sample_grids(*trained.model().space(), rom::SampleRegion::volume);
     return content;
 }
 
