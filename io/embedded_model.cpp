@@ -100,7 +100,7 @@ void add_coefficients(Bytes& out, const rom::CoefficientModel& model,
         return;
     }
     out.integer(model.options().correlation == rom::CorrelationKind::gaussian ? 1 : 0);
-    out.integer(model.options().trend == rom::Trend::linear ? 1 : 0);
+    out.integer(static_cast<int>(model.options().trend));
     out.integer(static_cast<std::int64_t>(model.design().factors.size()));
     for (const MatrixX& points : model.design().factors) {
         out.integer(points.rows());

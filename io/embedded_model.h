@@ -31,7 +31,7 @@ namespace couture::io {
 ///                              2: (1 + sin(2 pi t)) / 2
 ///     n_coefficients           i
 ///     without inputs           list of f, the coefficients; nothing more
-///     is_gaussian, is_linear   i: correlation (else Matern 5/2), trend (else constant)
+///     is_gaussian, degree      i: correlation (else Matern 5/2); of the trend, 0 to 2, products too
 ///     n_factors                i; for each n_points, n_inputs, points: of the tensor design
 ///     for each coefficient
 ///       lengths                n_inputs f

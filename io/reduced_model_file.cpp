@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int rom_version = 1;
+constexpr int rom_version = 2;
 constexpr const char* kind = "rom";
 
 /// The names that a choice has in files.
@@ -29,7 +29,9 @@ const Names<rom::ModeProduct> product_names = {{rom::ModeProduct::l2, "l2"},
 const Names<rom::CorrelationKind> correlation_names = {
     {rom::CorrelationKind::matern_5_2, "matern_5_2"}, {rom::CorrelationKind::gaussian, "gaussian"}};
 const Names<rom::Trend> trend_names = {{rom::Trend::constant, "constant"},
-                                       {rom::Trend::linear, "linear"}};
+                                       {rom::Trend::linear, "linear"},
+                                       {rom::Trend::quadratic, "quadratic"},
+                                       {rom::Trend::automatic, "automatic"}};
 
 template <typename Choice>
 std::string name_of(const Names<Choice>& names, Choice choice) {
@@ -151,6 +153,7 @@ Json record_of(const ReducedModelFile& content) {
     for (const rom::FieldModel& model : parts.models) {
         models.push_back({{"n_modes_asked", to_json(model.n_modes_asked())},
                           {"rank", model.basis().rank},
+                          {"trend", name_of(trend_names, model.coefficients().options().trend)},
                           {"remaining_energy", model.basis().remaining_energy},
                           {"n_factors", model.coefficients().design().factors.size()}});
     }
@@ -190,7 +193,8 @@ void write_model(hid_t group, const rom::FieldModel& model) {
 }
 
 rom::FieldModel read_model(const Source& source, hid_t group, const Json& record,
-                           const rom::KrigingOptions& kriging) {
+                           rom::KrigingOptions kriging) {
+    kriging.trend = choice_of(source.file, trend_names, record.at("trend"));
     rom::PodBasis basis;
     basis.modes = source.matrix(group, "modes");
     basis.singular_values = source.matrix(group, "singular_values");

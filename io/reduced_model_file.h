@@ -17,9 +17,9 @@ struct ReducedModelFile {
     std::map<std::string, std::string> provenance;
 };
 
-/// Writes a reduced model. Layout, version 1 (n_values is 3 n_nodes, or 6 n_nodes if stacked):
+/// Writes a reduced model. Layout, version 2 (n_values is 3 n_nodes, or 6 n_nodes if stacked):
 ///
-///   block of 512 bytes   as that of spline files (io/hdf5_store.h), "Couture rom 1"
+///   block of 512 bytes   as that of spline files (io/hdf5_store.h), "Couture rom 2"
 ///   /record              bytes: JSON with parameters and their units, options, calibration,
 ///                        provenance, and the numbers of the parts
 ///   /deck                bytes

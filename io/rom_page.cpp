@@ -117,7 +117,7 @@ Json model_json(const rom::CoefficientModel& model, const rom::KrigingInputs& in
                    {"waves", inputs.waves()},
                    {"n_coefficients", n},
                    {"is_gaussian", model.options().correlation == rom::CorrelationKind::gaussian},
-                   {"is_linear_trend", model.options().trend == rom::Trend::linear}};
+                   {"trend_degree", static_cast<int>(model.options().trend)}};
     if (model.models().empty()) {
         object["constants"] = packed(model.training());
         return object;

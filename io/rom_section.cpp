@@ -198,6 +198,13 @@ void read_design(Section& section, const std::filesystem::path& folder, RomSecti
     result.seed = static_cast<std::uint64_t>(section.integer("seed", 0, 1'000'000'000).value_or(1));
 }
 
+std::optional<rom::Trend> read_trend(Section& section) {
+    static const std::vector<std::string> names = {"constant", "linear", "quadratic", "automatic"};
+    const auto name = section.choice("trend", names);
+    if (!name) return {};
+    return static_cast<rom::Trend>(std::find(names.begin(), names.end(), *name) - names.begin());
+}
+
 }  // namespace
 
 rom::ParameterSpace RomSection::space() const {
@@ -245,9 +252,7 @@ std::optional<RomSection> read_rom_section(Section& top, const std::filesystem::
         if (section.choice("correlation", {"matern_5_2", "gaussian"}) == "gaussian") {
             result->correlation = rom::CorrelationKind::gaussian;
         }
-        if (section.choice("trend", {"constant", "linear"}) == "linear") {
-            result->trend = rom::Trend::linear;
-        }
+        result->trend = read_trend(section).value_or(result->trend);
         for_each_entry(section, "parameter", [&](Section& entry) {
             result->parameters.push_back(
                 read_parameter(entry, top.table(), result->design == GeometryDesign::list));

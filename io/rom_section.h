@@ -55,7 +55,7 @@ struct RomSection {
     /// Modes are orthonormal in L2 on the reference member, else in the Euclidean sense.
     bool is_l2 = true;
     rom::CorrelationKind correlation = rom::CorrelationKind::matern_5_2;
-    rom::Trend trend = rom::Trend::constant;
+    rom::Trend trend = rom::Trend::automatic;
 
     /// The box of all parameters, in their units.
     [[nodiscard]] rom::ParameterSpace space() const;

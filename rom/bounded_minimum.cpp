@@ -42,7 +42,7 @@ double evaluate(const std::vector<double>& x, std::vector<double>& gradient, voi
 }  // namespace
 
 BoundedMinimum bounded_minimum(const Function& function, const VectorX& start, const VectorX& lower,
-                               const VectorX& upper) {
+                               const VectorX& upper, double tolerance) {
     const VectorX first = start.cwiseMax(lower).cwiseMin(upper);
     VectorX slope(first.size());
     Search search{function, {first, function(first, slope)}};
@@ -54,9 +54,8 @@ BoundedMinimum bounded_minimum(const Function& function, const VectorX& start, c
     method.set_lower_bounds(to_values(lower));
     method.set_upper_bounds(to_values(upper));
     method.set_min_objective(evaluate, &search);
-    constexpr double tolerance = 1e-9;
     constexpr int most_evaluations = 200;
-    method.set_ftol_rel(tolerance);
+    method.set_ftol_abs(tolerance);
     method.set_maxeval(most_evaluations);
     std::vector<double> x = to_values(first);
     double value = 0.0;

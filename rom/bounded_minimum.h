@@ -15,11 +15,12 @@ struct BoundedMinimum {
 ///
 /// @param function  value at x; writes its gradient
 /// @param start, lower, upper  n values; the start is moved between the bounds
+/// @param tolerance  ends when a step changes the value by less
 /// @throws SolverError  if the function is not finite at the start
 ///
 /// Source: [Nocedal80]; the library NLopt.
 [[nodiscard]] BoundedMinimum bounded_minimum(
     const std::function<double(const VectorX& x, VectorX& gradient)>& function,
-    const VectorX& start, const VectorX& lower, const VectorX& upper);
+    const VectorX& start, const VectorX& lower, const VectorX& upper, double tolerance);
 
 }  // namespace couture::rom

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "iga/core/error.h"
@@ -29,6 +30,37 @@ std::vector<Kriging> make_models(int n, const Make& make) {
         models.push_back(std::move(*model));
     }
     return models;
+}
+
+/// Sum of the squares of all leave-one-out residuals of the first coefficients.
+double leave_one_out_cost(const TensorDesign& design, const MatrixX& values,
+                          const KrigingOptions& options) {
+    constexpr Eigen::Index n_compared = 6;
+    const MatrixX first = values.leftCols(std::min(n_compared, values.cols()));
+    double cost = 0.0;
+    for (const Kriging& model : make_models(static_cast<int>(first.cols()), [&](int k) {
+             return Kriging(design, first.col(k), options);
+         })) {
+        cost += model.leave_one_out().squaredNorm();
+    }
+    return cost;
+}
+
+Trend chosen_trend(const TensorDesign& design, const MatrixX& values, KrigingOptions options) {
+    if (options.trend != Trend::automatic) return options.trend;
+    Trend best = Trend::constant;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Trend trend : {Trend::constant, Trend::linear, Trend::quadratic}) {
+        const int n_terms = n_trend_functions(trend, design.n_parameters());
+        if (trend != Trend::constant && 2 * n_terms > values.rows()) break;
+        options.trend = trend;
+        const double cost = leave_one_out_cost(design, values, options);
+        if (cost < least) {
+            least = cost;
+            best = trend;
+        }
+    }
+    return best;
 }
 
 /// Correlations of one factor's points with a point, n_coefficients x points: as `correlations`,
@@ -95,6 +127,7 @@ CoefficientModel::CoefficientModel(TensorDesign design, MatrixX values,
                                    const KrigingOptions& options)
     : design_(std::move(design)), options_(options), training_(std::move(values)) {
     if (n_inputs() > 0) {
+        options_.trend = chosen_trend(design_, training_, options_);
         models_ = make_models(n_coefficients(),
                               [&](int k) { return Kriging(design_, training_.col(k), options_); });
     }
@@ -175,24 +208,18 @@ VectorX CoefficientModel::values(const VectorX& point) const {
     if (models_.empty()) {
         return training_.rows() == 1 ? VectorX(training_.row(0)) : VectorX();
     }
-    VectorX values = trends_.col(0) + contract(all_correlations(design_, options_.correlation,
-                                                                point, inverse_lengths_),
-                                               weights_);
-    if (options_.trend == Trend::linear) {
-        values += trends_.rightCols(n_inputs()) * point;
-    }
-    return values;
+    const std::vector<MatrixX> factors =
+        all_correlations(design_, options_.correlation, point, inverse_lengths_);
+    return trends_ * trend_functions(point.transpose(), options_.trend).transpose() +
+           contract(factors, weights_);
 }
 
 MatrixX CoefficientModel::gradient(const VectorX& point) const {
     assert(point.size() == n_inputs());
-    MatrixX gradient = MatrixX::Zero(n_coefficients(), n_inputs());
     if (models_.empty()) {
-        return gradient;
+        return MatrixX::Zero(n_coefficients(), n_inputs());
     }
-    if (options_.trend == Trend::linear) {
-        gradient = trends_.rightCols(n_inputs());
-    }
+    MatrixX gradient = trends_ * trend_slopes(point, options_.trend);
     const std::vector<MatrixX> factors =
         all_correlations(design_, options_.correlation, point, inverse_lengths_);
     for_factors(design_, point, inverse_lengths_,

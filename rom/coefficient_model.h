@@ -10,7 +10,10 @@ namespace couture::rom {
 /// together. Without inputs (a design without factors) it holds constants.
 class CoefficientModel {
   public:
-    /// @param values  n_points x n_coefficients
+    /// An automatic trend becomes that with which leaving out one point costs the first
+    /// coefficients least, of those with at most half as many terms as there are points.
+    ///
+    /// @param values  n_points x n_coefficients, the largest coefficients first
     /// @throws InputError  as Kriging, naming the coefficient
     CoefficientModel(TensorDesign design, MatrixX values, const KrigingOptions& options);
     /// With parameters that are known, one for each coefficient.

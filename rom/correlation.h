@@ -14,9 +14,6 @@ enum class CorrelationKind { matern_5_2, gaussian };
 /// Source: [RasmussenWilliams06] Eq. (4.9), (4.17).
 [[nodiscard]] double correlation(CorrelationKind kind, double difference, double length);
 
-/// d correlation / d log(length), over the correlation.
-[[nodiscard]] double log_length_derivative(CorrelationKind kind, double difference, double length);
-
 /// d correlation / d difference, over the correlation.
 [[nodiscard]] double difference_derivative(CorrelationKind kind, double difference, double length);
 
@@ -28,5 +25,13 @@ enum class CorrelationKind { matern_5_2, gaussian };
 /// @return n x m
 [[nodiscard]] MatrixX correlations(CorrelationKind kind, const MatrixX& a, const MatrixX& b,
                                    const VectorX& lengths);
+
+/// For each axis the sum over all pairs of points of weight times d log(correlation) / d
+/// log(length).
+///
+/// @param points   n x d
+/// @param weights  n x n, symmetric
+[[nodiscard]] VectorX log_length_derivatives(CorrelationKind kind, const MatrixX& points,
+                                             const VectorX& lengths, const MatrixX& weights);
 
 }  // namespace couture::rom

@@ -77,19 +77,19 @@ MatrixX apply_kronecker(const std::vector<MatrixX>& A, const MatrixX& B) {
 }
 
 std::optional<CorrelationMatrix> CorrelationMatrix::factored(std::vector<MatrixX> factors,
-                                                             double nugget, bool has_traces) {
+                                                             double nugget, bool has_slopes) {
     assert(!factors.empty() && nugget >= 0.0);
     CorrelationMatrix matrix;
     matrix.sizes_ = sizes_of(factors);
     matrix.factors_ = std::move(factors);
     matrix.nugget_ = nugget;
-    if (!matrix.factor(has_traces)) {
+    if (!matrix.factor(has_slopes)) {
         return std::nullopt;
     }
     return matrix;
 }
 
-bool CorrelationMatrix::factor(bool has_traces) {
+bool CorrelationMatrix::factor(bool has_slopes) {
     if (factors_.size() == 1) {
         MatrixX K = factors_.front();
         const Eigen::Index n = K.rows();
@@ -99,19 +99,22 @@ bool CorrelationMatrix::factor(bool has_traces) {
             return false;
         }
         L_ = cholesky.matrixL();
-        if (has_traces) {
-            inverse_ = cholesky.solve(MatrixX::Identity(n, n));
+        if (has_slopes) {
+            const MatrixX L_inverse =
+                L_.triangularView<Eigen::Lower>().solve(MatrixX::Identity(n, n));
+            inverse_ = MatrixX::Zero(n, n);
+            inverse_.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse.transpose());
+            inverse_.triangularView<Eigen::StrictlyUpper>() = inverse_.transpose();
         }
         return true;
     }
-    std::vector<VectorX> eigenvalues;
     for (const MatrixX& K : factors_) {
         const Eigen::SelfAdjointEigenSolver<MatrixX> solver(K);
         eigenvectors_.push_back(solver.eigenvectors());
         // Rounding leaves the smallest ones below zero.
-        eigenvalues.emplace_back(solver.eigenvalues().cwiseMax(0.0));
+        factor_eigenvalues_.emplace_back(solver.eigenvalues().cwiseMax(0.0));
     }
-    eigenvalues_ = kronecker(eigenvalues).array() + nugget_;
+    eigenvalues_ = kronecker(factor_eigenvalues_).array() + nugget_;
     return eigenvalues_.minCoeff() > least_ratio(eigenvalues_.size()) * eigenvalues_.maxCoeff();
 }
 
@@ -146,27 +149,40 @@ VectorX CorrelationMatrix::inverse_diagonal() const {
     return apply_kronecker(squares, eigenvalues_.cwiseInverse());
 }
 
-double CorrelationMatrix::trace_of_inverse_times(int i_factor, const MatrixX& dK) const {
+MatrixX CorrelationMatrix::likelihood_slope(int i_factor, const VectorX& w, double variance) const {
     if (factors_.size() == 1) {
         assert(inverse_.size() > 0);
-        return inverse_.cwiseProduct(dK).sum();
+        return 0.5 * (inverse_ - w * (w.transpose() / variance));
     }
-    std::vector<VectorX> diagonals;
+    // tr(K^-1 (K_1 x ... dK ...)) is the sum of c_j q_j^T dK q_j over the eigenvectors of K_g.
+    std::vector<VectorX> others = factor_eigenvalues_;
+    others[i_factor].setOnes();
+    const VectorX ratios = kronecker(others).cwiseQuotient(eigenvalues_);
+    std::vector<MatrixX> sums;
     for (int g = 0; g < static_cast<int>(factors_.size()); ++g) {
-        const MatrixX& Q = eigenvectors_[g];
-        const MatrixX& K = g == i_factor ? dK : factors_[g];
-        diagonals.emplace_back(Q.cwiseProduct(K * Q).colwise().sum().transpose());
+        sums.push_back(g == i_factor ? MatrixX(MatrixX::Identity(sizes_[g], sizes_[g]))
+                                     : MatrixX(MatrixX::Ones(1, sizes_[g])));
     }
-    return kronecker(diagonals).cwiseQuotient(eigenvalues_).sum();
-}
-
-VectorX CorrelationMatrix::apply_derivative(int i_factor, const MatrixX& dK,
-                                            const VectorX& v) const {
-    VectorX result = v;
+    std::vector<int> sizes = sizes_;
+    MatrixX c = ratios;
+    MatrixX Kw = w;
     for (int g = 0; g < static_cast<int>(factors_.size()); ++g) {
-        result = apply_along(g == i_factor ? dK : factors_[g], g, sizes_, result);
+        if (g == i_factor) continue;
+        c = apply_along(sums[g], g, sizes, c);
+        sizes[g] = 1;
+        Kw = apply_along(factors_[g], g, sizes_, Kw);
     }
-    return result;
+    const MatrixX& Q = eigenvectors_[i_factor];
+    MatrixX slope = Q * c.col(0).asDiagonal() * Q.transpose();
+    Eigen::Index after = 1;
+    for (int g = i_factor + 1; g < static_cast<int>(sizes_.size()); ++g) after *= sizes_[g];
+    const Eigen::Index n = sizes_[i_factor];
+    for (Eigen::Index first = 0; first < w.size(); first += n * after) {
+        const Eigen::Map<const MatrixX> a(w.data() + first, after, n);
+        const Eigen::Map<const MatrixX> b(Kw.data() + first, after, n);
+        slope -= a.transpose() * b / variance;
+    }
+    return 0.5 * slope;
 }
 
 }  // namespace couture::rom

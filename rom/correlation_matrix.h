@@ -15,11 +15,11 @@ namespace couture::rom {
 /// Source: [Saatci11] Ch. 5 (products with a nugget through eigenvectors).
 class CorrelationMatrix {
   public:
-    /// @param has_traces  keeps what `trace_of_inverse_times` takes: most of the time of one factor
+    /// @param has_slopes  keeps what `likelihood_slope` takes: most of the time of one factor
     /// @return nothing if K is not positive definite to rounding
     [[nodiscard]] static std::optional<CorrelationMatrix> factored(std::vector<MatrixX> factors,
                                                                    double nugget,
-                                                                   bool has_traces = false);
+                                                                   bool has_slopes = false);
 
     /// Of one factor: lower, L L^T = K; empty for several.
     [[nodiscard]] const MatrixX& cholesky_factor() const { return L_; }
@@ -33,24 +33,25 @@ class CorrelationMatrix {
     [[nodiscard]] double log_determinant() const;
     /// Diagonal of K^-1.
     [[nodiscard]] VectorX inverse_diagonal() const;
-    /// Trace of K^-1 (K_1 x ... dK_g ... ): for the derivative by a parameter of factor g. Only
-    /// if it was factored for traces.
-    [[nodiscard]] double trace_of_inverse_times(int i_factor, const MatrixX& dK) const;
-    /// (K_1 x ... dK_g ...) v.
-    [[nodiscard]] VectorX apply_derivative(int i_factor, const MatrixX& dK, const VectorX& v) const;
+    /// Derivative of (log(det K) + y^T K^-1 y / variance) / 2 by the entries of K_g: S with
+    /// d = sum of S_ij dK_ij for symmetric dK, n_g x n_g. Only if it was factored for slopes.
+    ///
+    /// @param w  K^-1 y
+    [[nodiscard]] MatrixX likelihood_slope(int i_factor, const VectorX& w, double variance) const;
 
   private:
     CorrelationMatrix() = default;
-    [[nodiscard]] bool factor(bool has_traces);
+    [[nodiscard]] bool factor(bool has_slopes);
 
     std::vector<MatrixX> factors_;
     double nugget_ = 0.0;
     std::vector<int> sizes_;
-    /// Of one factor: lower Cholesky factor of K, and for traces K^-1.
+    /// Of one factor: lower Cholesky factor of K, and for slopes K^-1.
     MatrixX L_;
     MatrixX inverse_;
     /// Of several: eigenvectors of each, and the eigenvalues of K, the last factor fastest.
     std::vector<MatrixX> eigenvectors_;
+    std::vector<VectorX> factor_eigenvalues_;
     VectorX eigenvalues_;
 };
 

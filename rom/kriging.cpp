@@ -16,6 +16,8 @@ namespace {
 /// Of the unit cube's edge. Longer ones don't differ from a polynomial, shorter ones from noise.
 constexpr double shortest_length = 0.05;
 constexpr double longest_length = 20.0;
+/// Parameters whose logarithms of the likelihood differ by less are as good.
+constexpr double same_likelihood = 1e-7;
 constexpr double least_nugget = 1e-10;
 constexpr double largest_nugget = 1.0;
 /// Values that are constant but for rounding.
@@ -42,27 +44,6 @@ std::vector<MatrixX> correlation_factors(const TensorDesign& design, Correlation
             correlations(kind, points, points, lengths.segment(first[g], points.cols())));
     }
     return factors;
-}
-
-/// d K_g / d log(length) of one of its inputs.
-MatrixX length_derivative(const MatrixX& points, int input, CorrelationKind kind, double length,
-                          const MatrixX& K) {
-    MatrixX derivative(K.rows(), K.cols());
-    for (Eigen::Index j = 0; j < K.cols(); ++j) {
-        for (Eigen::Index i = 0; i < K.rows(); ++i) {
-            derivative(i, j) =
-                K(i, j) * log_length_derivative(kind, points(i, input) - points(j, input), length);
-        }
-    }
-    return derivative;
-}
-
-MatrixX trend_functions(const MatrixX& points, Trend trend) {
-    MatrixX F = MatrixX::Ones(points.rows(), trend == Trend::linear ? 1 + points.cols() : 1);
-    if (trend == Trend::linear) {
-        F.rightCols(points.cols()) = points;
-    }
-    return F;
 }
 
 KrigingParameters to_parameters(const VectorX& logarithms, int n_inputs,
@@ -101,7 +82,7 @@ void check(const TensorDesign& design, const VectorX& values, const KrigingOptio
     if (!values.allFinite()) {
         throw InputError("Kriging: a value is not finite; leave its point out");
     }
-    const int n_terms = options.trend == Trend::linear ? 1 + design.n_parameters() : 1;
+    const int n_terms = n_trend_functions(options.trend, design.n_parameters());
     if (values.size() <= n_terms) {
         throw InputError("Kriging: {} points; a trend of {} terms needs at least {}", values.size(),
                          n_terms, n_terms + 1);
@@ -160,7 +141,8 @@ KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
     for (int i = 0; i < options.n_starts; ++i) {
         const VectorX start =
             bounds.lower + starts.row(i).transpose().cwiseProduct(bounds.upper - bounds.lower);
-        const BoundedMinimum found = bounded_minimum(objective, start, bounds.lower, bounds.upper);
+        const BoundedMinimum found =
+            bounded_minimum(objective, start, bounds.lower, bounds.upper, same_likelihood);
         if (found.value < best.value) {
             best = found;
         }
@@ -187,14 +169,11 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
     const LeastSquares fit = least_squares(*K, F, values);
     const std::vector<int> first = offsets(design);
     for (int g = 0; g < static_cast<int>(factors.size()); ++g) {
-        for (int input = 0; input < design.factors[g].cols(); ++input) {
-            const int i = first[g] + input;
-            const MatrixX dK = length_derivative(design.factors[g], input, options.correlation,
-                                                 parameters.lengths[i], factors[g]);
-            gradient[i] =
-                0.5 * (K->trace_of_inverse_times(g, dK) -
-                       fit.weights.dot(K->apply_derivative(g, dK, fit.weights)) / fit.variance);
-        }
+        const Eigen::Index n_g = design.factors[g].cols();
+        const MatrixX slope = K->likelihood_slope(g, fit.weights, fit.variance);
+        gradient.segment(first[g], n_g) = log_length_derivatives(
+            options.correlation, design.factors[g], parameters.lengths.segment(first[g], n_g),
+            slope.cwiseProduct(factors[g]));
     }
     if (!options.nugget) {
         gradient[n_inputs] =
@@ -297,8 +276,7 @@ Prediction Kriging::predict(const VectorX& point) const {
     prediction.value = f.row(0).dot(beta_.transpose()) + k.dot(weights_);
     prediction.variance = variance(k, point);
 
-    prediction.gradient = options_.trend == Trend::linear ? VectorX(beta_.tail(point.size()))
-                                                          : VectorX(VectorX::Zero(point.size()));
+    prediction.gradient = trend_slopes(point, options_.trend).transpose() * beta_;
     const std::vector<int> first = offsets(design_);
     for (std::size_t g = 0; g < rows.size(); ++g) {
         const MatrixX& points = design_.factors[g];

@@ -7,13 +7,13 @@
 #include "rom/correlation.h"
 #include "rom/correlation_matrix.h"
 #include "rom/tensor_design.h"
+#include "rom/trend.h"
 
 namespace couture::rom {
 
-enum class Trend { constant, linear };
-
 struct KrigingOptions {
     CorrelationKind correlation = CorrelationKind::matern_5_2;
+    /// Automatic: in CoefficientModel only.
     Trend trend = Trend::constant;
     /// Variance of noise over that of the process; without it by maximum likelihood.
     std::optional<double> nugget = std::nullopt;
@@ -68,7 +68,7 @@ class Kriging {
     [[nodiscard]] const KrigingParameters& parameters() const { return parameters_; }
     /// K^-1 (y - trend), one for each point of the design.
     [[nodiscard]] const VectorX& weights() const { return weights_; }
-    /// Of the functions 1, then of the inputs if the trend is linear.
+    /// Of `trend_functions`.
     [[nodiscard]] const VectorX& trend_coefficients() const { return beta_; }
     /// Of the process, that correlations multiply.
     [[nodiscard]] double process_variance() const { return variance_; }

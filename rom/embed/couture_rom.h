@@ -239,7 +239,7 @@ class CoefficientModel {
             return;
         }
         is_gaussian_ = reader.integer(0, 1, "kind of correlation") != 0;
-        is_linear_ = reader.integer(0, 1, "kind of trend") != 0;
+        trend_degree_ = reader.integer(0, 2, "kind of trend");
         const std::size_t n_factors = reader.count("numbers of factors");
         std::size_t n_factor_inputs = 0;
         for (std::size_t g = 0; g < n_factors; ++g) {
@@ -253,7 +253,7 @@ class CoefficientModel {
             factors_.push_back(std::move(factor));
         }
         reader.expect(n_factors > 0 && n_factor_inputs == n_inputs, "inputs of the factors");
-        const std::size_t n_trend = is_linear_ ? n_inputs + 1 : 1;
+        const std::size_t n_trend = trend_functions(Vector(n_inputs, 0.0)).size();
         for (std::size_t k = 0; k < n; ++k) {
             Kriging one;
             one.lengths = reader.numbers(n_inputs);
@@ -328,7 +328,10 @@ class CoefficientModel {
     }
     Vector trend_functions(const Vector& x) const {
         Vector f = {1.0};
-        if (is_linear_) f.insert(f.end(), x.begin(), x.end());
+        if (trend_degree_ > 0) f.insert(f.end(), x.begin(), x.end());
+        for (std::size_t i = 0; trend_degree_ > 1 && i < x.size(); ++i) {
+            for (std::size_t j = i; j < x.size(); ++j) f.push_back(x[i] * x[j]);
+        }
         return f;
     }
     /// With all points of the design, the last factor fastest.
@@ -394,7 +397,8 @@ class CoefficientModel {
     Integers waves_;
     Vector constants_;
     bool is_gaussian_ = false;
-    bool is_linear_ = false;
+    /// 0 constant, 1 linear, 2 quadratic with all products.
+    std::int64_t trend_degree_ = 0;
     std::vector<Factor> factors_;
     std::size_t n_points_ = 1;
     std::vector<Kriging> models_;

@@ -42,9 +42,18 @@ function dot(a, b, offset = 0) {
   return sum;
 }
 
+/** Pairs of inputs whose products are trend functions: rom/trend.h. */
+function trendPairs(model) {
+  const pairs = [];
+  if (model.trend_degree < 2) return pairs;
+  for (let i = 0; i < model.inputs.length; ++i) for (let j = i; j < model.inputs.length; ++j) pairs.push([i, j]);
+  return pairs;
+}
+
 /** Trend functions at a point. */
 function trendFunctions(model, point) {
-  return model.is_linear_trend ? Float64Array.of(1, ...point) : Float64Array.of(1);
+  if (model.trend_degree === 0) return Float64Array.of(1);
+  return Float64Array.of(1, ...point, ...trendPairs(model).map(([i, j]) => point[i] * point[j]));
 }
 
 /** Coefficients at a point of the unit cube. */
@@ -158,14 +167,14 @@ function inverseRoot(model, k) {
 function trendRows(model) {
   const ones = model.factors.map((factor) => new Float64Array(factor.n_points).fill(1));
   const terms = [ones];
-  if (!model.is_linear_trend) return terms;
-  model.factors.forEach((factor, g) => {
-    for (let axis = 0; axis < factor.n_inputs; ++axis) {
-      const rows = [...ones];
-      rows[g] = Float64Array.from({ length: factor.n_points }, (_, j) => factor.points[j * factor.n_inputs + axis]);
-      terms.push(rows);
-    }
-  });
+  if (model.trend_degree === 0) return terms;
+  const places = model.factors.flatMap((factor, g) => Array.from({ length: factor.n_inputs }, (_, axis) => ({ g, axis })));
+  const times = (rows, { g, axis }) => {
+    const { n_inputs, points } = model.factors[g];
+    return rows.map((row, h) => (h === g ? row.map((value, j) => value * points[j * n_inputs + axis]) : row));
+  };
+  for (const place of places) terms.push(times(ones, place));
+  for (const [i, j] of trendPairs(model)) terms.push(times(times(ones, places[i]), places[j]));
   return terms;
 }
 

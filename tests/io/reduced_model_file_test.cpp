@@ -146,7 +146,7 @@ TEST_CASE("reduced model file: cut, changed, strange and later files are refused
     }
     SECTION("of a later version") {
         std::string later = bytes;
-        later.replace(0, 13, "Couture rom 2");
+        later.replace(0, 13, "Couture rom 3");
         write_text(path, later);
         CHECK_THROWS_AS(read_reduced_model(path), FileError);
         CHECK_THROWS_WITH(read_reduced_model(path), Contains("version"));
@@ -154,7 +154,7 @@ TEST_CASE("reduced model file: cut, changed, strange and later files are refused
     SECTION("whole, but with the content of another kind") {
         const std::string splines = to_hdf5<3>(quarter_ring());
         const std::size_t end = splines.find('\n');
-        std::string block = "Couture rom 1" + splines.substr(end, 512 - end);
+        std::string block = "Couture rom 2" + splines.substr(end, 512 - end);
         block.resize(512, '\0');
         write_text(path, block + splines.substr(512));
         CHECK_THROWS_WITH(read_reduced_model(path), Contains("there is no data set 'record'"));

@@ -20,15 +20,15 @@ double rosenbrock(const VectorX& x, VectorX& gradient) {
 }  // namespace
 
 TEST_CASE("bounded_minimum: Rosenbrock's valley", "[rom]") {
-    const auto found =
-        bounded_minimum(rosenbrock, Vector2(-1.2, 1.0), Vector2(-2.0, -2.0), Vector2(2.0, 2.0));
+    const auto found = bounded_minimum(rosenbrock, Vector2(-1.2, 1.0), Vector2(-2.0, -2.0),
+                                       Vector2(2.0, 2.0), 1e-12);
     CHECK((found.x - Vector2(1.0, 1.0)).norm() < 1e-3);
 }
 
 TEST_CASE("bounded_minimum: stays within bounds, on them if the minimum is outside", "[rom]") {
     // With x <= 0.5 the minimum is (0.5, 0.25).
-    const auto found =
-        bounded_minimum(rosenbrock, Vector2(7.0, 7.0), Vector2(-2.0, -2.0), Vector2(0.5, 2.0));
+    const auto found = bounded_minimum(rosenbrock, Vector2(7.0, 7.0), Vector2(-2.0, -2.0),
+                                       Vector2(0.5, 2.0), 1e-12);
     CHECK((found.x - Vector2(0.5, 0.25)).norm() < 1e-4);
     CHECK(found.value == Approx(0.25));
 }
@@ -39,5 +39,5 @@ TEST_CASE("bounded_minimum: refuses a function that is not finite at the start",
         return std::numeric_limits<double>::infinity();
     };
     const VectorX zero = VectorX::Zero(1);
-    CHECK_THROWS_AS(bounded_minimum(bad, zero, zero, VectorX::Ones(1)), SolverError);
+    CHECK_THROWS_AS(bounded_minimum(bad, zero, zero, VectorX::Ones(1), 1e-12), SolverError);
 }

@@ -114,3 +114,16 @@ TEST_CASE("CoefficientModel: names the coefficient that can't be learned", "[rom
     CHECK_THROWS_WITH(CoefficientModel(tensor_design(), values, {}),
                       Catch::Contains("coefficient 1: Kriging: a value is not finite"));
 }
+
+TEST_CASE("CoefficientModel: an automatic trend is that of the largest coefficient", "[rom]") {
+    const MatrixX points = latin_hypercube_design(2, 20, 5);
+    const VectorX x = points.col(0);
+    const VectorX y = points.col(1);
+    MatrixX values(20, 1);
+    values.col(0) = 1.0 + x.array() - 3.0 * x.array() * y.array() + y.array().square();
+    const KrigingOptions options{.trend = Trend::automatic};
+    CHECK(CoefficientModel({{points}}, values, options).options().trend == Trend::quadratic);
+    // Too few points for more terms than one.
+    const CoefficientModel few({{points.topRows(4)}}, values.topRows(4), options);
+    CHECK(few.options().trend == Trend::constant);
+}

@@ -24,7 +24,12 @@ TEST_CASE("correlation: derivatives agree with differences", "[rom]") {
     const double by_length =
         (correlation(kind, x, length * std::exp(h)) - correlation(kind, x, length * std::exp(-h))) /
         (2.0 * h);
-    CHECK(c * log_length_derivative(kind, x, length) == Approx(by_length).epsilon(1e-6));
+    // Of two points, both ways.
+    const MatrixX points = (MatrixX(2, 1) << 0.2, 0.2 + x).finished();
+    const MatrixX weights = MatrixX::Constant(2, 2, 0.5 * c);
+    const VectorX lengths = VectorX::Constant(1, length);
+    CHECK(log_length_derivatives(kind, points, lengths, weights)[0] ==
+          Approx(by_length).epsilon(1e-6));
     const double by_x =
         (correlation(kind, x + h, length) - correlation(kind, x - h, length)) / (2.0 * h);
     CHECK(c * difference_derivative(kind, x, length) == Approx(by_x).epsilon(1e-6));

@@ -78,7 +78,7 @@ TEST_CASE("Kriging: interpolates without nugget, with no variance at the data", 
 TEST_CASE("Kriging: gradient of the prediction agrees with differences", "[rom]") {
     const TensorDesign design = GENERATE(scattered(3, 20), two_factors());
     const auto kind = GENERATE(CorrelationKind::gaussian, CorrelationKind::matern_5_2);
-    const auto trend = GENERATE(Trend::constant, Trend::linear);
+    const auto trend = GENERATE(Trend::constant, Trend::linear, Trend::quadratic);
     const VectorX values = values_at(design.points(), smooth);
     const Kriging model(design, values, {.correlation = kind, .trend = trend, .nugget = 1e-6});
     const VectorX x = (VectorX(3) << 0.3, 0.62, 0.81).finished();
@@ -95,7 +95,7 @@ TEST_CASE("Kriging: gradient of the prediction agrees with differences", "[rom]"
 TEST_CASE("kriging_objective: gradient agrees with differences", "[rom]") {
     const TensorDesign design = GENERATE(scattered(3, 15), two_factors());
     const auto kind = GENERATE(CorrelationKind::gaussian, CorrelationKind::matern_5_2);
-    const auto trend = GENERATE(Trend::constant, Trend::linear);
+    const auto trend = GENERATE(Trend::constant, Trend::linear, Trend::quadratic);
     const KrigingOptions options{.correlation = kind, .trend = trend};
     const VectorX values = values_at(design.points(), smooth);
     const VectorX x =
@@ -131,7 +131,7 @@ TEST_CASE("Kriging: tensor designs give what the dense matrix gives", "[rom]") {
 }
 
 TEST_CASE("Kriging: leave-one-out residuals are those of refitting", "[rom]") {
-    const auto trend = GENERATE(Trend::constant, Trend::linear);
+    const auto trend = GENERATE(Trend::constant, Trend::linear, Trend::quadratic);
     const MatrixX points = latin_hypercube_design(2, 14, 5);
     const VectorX values = values_at(points, smooth);
     const KrigingParameters parameters{Vector2(0.5, 0.7), 1e-5};
@@ -151,6 +151,17 @@ TEST_CASE("Kriging: leave-one-out residuals are those of refitting", "[rom]") {
               Approx(values[left_out] - refitted.value(points.row(left_out).transpose()))
                   .epsilon(1e-6));
     }
+}
+
+TEST_CASE("Kriging: a quadratic trend gives back a paraboloid, far outside too", "[rom]") {
+    const auto paraboloid = [](const VectorX& x) {
+        return 2.0 - x[0] + 3.0 * x[1] + x[0] * x[1] - 0.5 * x[1] * x[1];
+    };
+    const TensorDesign design = scattered(2, 15);
+    const Kriging model(design, values_at(design.points(), paraboloid),
+                        {.trend = Trend::quadratic});
+    const VectorX x = Vector2(3.0, -2.0);
+    CHECK(model.value(x) == Approx(paraboloid(x)).epsilon(1e-6));
 }
 
 TEST_CASE("Kriging: a linear trend gives back a plane, far outside too", "[rom]") {

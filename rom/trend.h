@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "iga/core/types.h"
+
+namespace couture::rom {
+
+/// Polynomials whose sum is the mean of a kriging model.
+enum class Trend {
+    constant,
+    linear,
+    quadratic,  ///< with all products of two inputs
+    automatic   ///< of these the one with the least leave-one-out errors: CoefficientModel
+};
+
+[[nodiscard]] std::string to_string(Trend trend);
+
+/// Number of the functions: 1, then d inputs, then d (d + 1) / 2 products.
+[[nodiscard]] int n_trend_functions(Trend trend, int n_inputs);
+
+/// Functions 1, x_i, x_i x_j (j >= i, by i) at points: n_points x n_functions.
+///
+/// @param points  n_points x n_inputs
+/// @param trend   not automatic
+[[nodiscard]] MatrixX trend_functions(const MatrixX& points, Trend trend);
+
+/// Their derivatives at a point: n_functions x n_inputs.
+[[nodiscard]] MatrixX trend_slopes(const VectorX& point, Trend trend);
+
+}  // namespace couture::rom
