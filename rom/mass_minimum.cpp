@@ -14,6 +14,8 @@ namespace couture::rom {
 
 namespace {
 
+/// Parts of a limit by which violations are told apart.
+constexpr double same_violation = 1e-9;
 /// Smooth maxima exceed the largest value by log(n) over these.
 constexpr std::array<double, 3> sharpnesses = {30.0, 300.0, 3000.0};
 
@@ -126,7 +128,7 @@ class FreeSearch {
                         gradient = gradients.rightCols(n) * worst.weights;
                         return worst.value;
                     },
-                    x, VectorX::Zero(x.size()), VectorX::Ones(x.size()))
+                    x, VectorX::Zero(x.size()), VectorX::Ones(x.size()), same_violation)
                     .x;
         }
         return x;
