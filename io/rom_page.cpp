@@ -312,6 +312,10 @@ Json page_json(const rom::ReducedModel& model, const PageContent& content) {
                    parts.calibration.displacement, rows_of(model.displacement_mean(), nodes),
                    rows_of(model.displacement_modes(), nodes))},
         {"models", std::move(models)},
+        {"amplitude",
+         parts.amplitude
+             ? model_json(*parts.amplitude, model.input_parameters(parts.displacement.i_model))
+             : Json()},
         {"grids", std::move(grids)},
         {"colors", colors_json()}};
 }

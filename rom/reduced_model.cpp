@@ -91,6 +91,30 @@ class Trainer {
         return {{.n_modes = options_.n_modes, .tolerance = options_.tolerance}, options_.kriging};
     }
 
+    /// Lengths of the displacements (1 where refused) if all are within 60 degrees of the direction
+    /// that they have in common; else nothing.
+    [[nodiscard]] std::optional<VectorX> amplitudes(const InnerProduct& inner) const {
+        constexpr double least_cosine = 0.5;
+        const std::vector<int> accepted = accepted_columns(set_.displacements);
+        const TensorDesign design = set_.design();
+        if (options_.amplitude == Amplitude::none || design.n_parameters() == 0 ||
+            accepted.size() < 2) {
+            return {};
+        }
+        const VectorX size = lengths(set_.displacements(Eigen::all, accepted), inner);
+        if (!(size.minCoeff() > 0.0)) return {};
+        const MatrixX unit =
+            set_.displacements(Eigen::all, accepted) * size.cwiseInverse().asDiagonal();
+        const PodBasis direction = make_pod_basis(unit, inner, {.n_modes = 1});
+        const MatrixX cosines =
+            project(direction, inner, unit) / std::sqrt(inner.squared_norms(unit.col(0))[0]);
+        const double sign = cosines.sum() < 0.0 ? -1.0 : 1.0;
+        if ((sign * cosines).minCoeff() < least_cosine) return {};
+        VectorX all = VectorX::Ones(set_.displacements.cols());
+        all(accepted) = size;
+        return all;
+    }
+
     void train_separate(ReducedModelParts& parts) const {
         const InnerProduct inner = product(3);
         TensorDesign geometries;
@@ -99,12 +123,21 @@ class Trainer {
         }
         parts.models.emplace_back(geometries, set_.control_points, to_field(space_, set_.reference),
                                   inner, field_options());
-        parts.models.emplace_back(set_.design(), set_.displacements,
-                                  VectorX::Zero(set_.displacements.rows()), inner, field_options());
+        const std::optional<VectorX> amplitude = amplitudes(inner);
+        const MatrixX fields = amplitude
+                                   ? set_.displacements * amplitude->cwiseInverse().asDiagonal()
+                                   : set_.displacements;
+        parts.models.emplace_back(set_.design(), fields, VectorX::Zero(fields.rows()), inner,
+                                  field_options());
         parts.geometry = measure({}, parts.models[0], set_.control_points, inner);
         parts.displacement.i_model = 1;
-        parts.displacement =
-            measure(parts.displacement, parts.models[1], set_.displacements, inner);
+        parts.displacement = measure(parts.displacement, parts.models[1], fields, inner);
+        if (!amplitude) return;
+        const std::vector<int> accepted = accepted_columns(fields);
+        const VectorX logarithms = (*amplitude)(accepted).array().log();
+        parts.amplitude =
+            learned_coefficients(set_.design(), accepted, logarithms, options_.kriging);
+        parts.displacement = with_amplitude(parts.displacement, *parts.amplitude);
     }
 
     void train_stacked(ReducedModelParts& parts) const {
@@ -202,6 +235,15 @@ ReducedModel::ReducedModel(ReducedModelParts parts) : parts_(std::move(parts)) {
         }
         input_parameters_.push_back(std::move(inputs));
     }
+    if (parts_.amplitude &&
+        (parts_.amplitude->n_coefficients() != 1 ||
+         parts_.amplitude->n_inputs() !=
+             static_cast<int>(input_parameters_[parts_.displacement.i_model].size()))) {
+        throw InputError(
+            "ReducedModel: the amplitude has {} coefficients of {} inputs; expected 1 of {}",
+            parts_.amplitude->n_coefficients(), parts_.amplitude->n_inputs(),
+            input_parameters_[parts_.displacement.i_model].size());
+    }
 }
 
 VectorX ReducedModel::inputs(int i_model, const VectorX& unit_point) const {
@@ -236,7 +278,17 @@ double ReducedModel::factor(const VectorX& point) const {
             product /= ratio;
         }
     }
+    if (parts_.amplitude) {
+        const VectorX x = inputs(parts_.displacement.i_model, parameters().to_unit(point));
+        product *= std::exp(parts_.amplitude->values(x)[0]);
+    }
     return product;
+}
+
+double ReducedModel::amplitude_standard_error(const VectorX& unit_point) const {
+    if (!parts_.amplitude) return 0.0;
+    const VectorX x = inputs(parts_.displacement.i_model, unit_point);
+    return std::sqrt(parts_.amplitude->variances(x)[0]);
 }
 
 VectorX ReducedModel::coefficients(const FieldPart& part, const VectorX& unit_point) const {
@@ -317,6 +369,16 @@ EvaluationGradient ReducedModel::gradient(const VectorX& point) const {
     gradient.control_points = part_gradient(parts_.geometry, unit);
     gradient.displacement = factor(point) * part_gradient(parts_.displacement, unit);
     const VectorX u = evaluate(point).displacement;
+    if (parts_.amplitude) {
+        const std::vector<int>& sampled = input_parameters_[parts_.displacement.i_model];
+        const MatrixX slopes =
+            parts_.amplitude->gradient(inputs(parts_.displacement.i_model, unit));
+        for (std::size_t k = 0; k < sampled.size(); ++k) {
+            const Parameter& one = parameters().parameters()[sampled[k]];
+            gradient.displacement.col(sampled[k]) +=
+                u * (slopes(0, static_cast<Eigen::Index>(k)) / (one.upper - one.lower));
+        }
+    }
     for (int i = 0; i < parameters().size(); ++i) {
         if (parts_.factor_power[i] == 1 && point[i] == 0.0) {
             VectorX moved = point;
@@ -338,8 +400,9 @@ ErrorEstimates ReducedModel::errors(const VectorX& point) const {
                                      parts_.geometry.size, calibration.geometry);
     const double length =
         std::abs(scale) * parts_.displacement.length(coefficients(parts_.displacement, unit));
-    errors.displacement = estimate_error(parts_.displacement, variances(parts_.displacement, unit),
-                                         scale, length, calibration.displacement);
+    errors.displacement =
+        estimate_error(parts_.displacement, variances(parts_.displacement, unit), scale, length,
+                       calibration.displacement, length * amplitude_standard_error(unit));
     errors.von_mises = calibration.von_mises * errors.displacement.relative;
     return errors;
 }
@@ -354,8 +417,11 @@ VectorX ReducedModel::displacement_standard_errors(const VectorX& point) const {
 
 VectorX ReducedModel::displacement_error_field(const VectorX& point) const {
     const FieldPart& part = parts_.displacement;
-    const VectorX errors = model_of(part).standard_errors(variances(part, unit_point(point)));
-    return std::abs(factor(point)) * part_of(part, errors);
+    const VectorX unit = unit_point(point);
+    const VectorX errors = model_of(part).standard_errors(variances(part, unit));
+    const VectorX scaled = std::abs(factor(point)) * part_of(part, errors);
+    const VectorX by_amplitude = amplitude_standard_error(unit) * evaluate(point).displacement;
+    return (scaled.cwiseAbs2() + by_amplitude.cwiseAbs2()).cwiseSqrt();
 }
 
 MatrixX ReducedModel::displacement_modes() const {

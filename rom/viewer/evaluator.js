@@ -22,12 +22,12 @@ function largest(values, points) {
 }
 
 /** rom/field_part.h, estimate_error. */
-function estimateError(part, v, factor, length) {
+function estimateError(part, v, factor, length, amplitudeError = 0) {
   const n = v.length;
   let square = 0;
   for (let k = 0; k < n; ++k) square += v[k] * part.gram[k * n + k];
   const size = Math.abs(factor);
-  const kriging = size * Math.sqrt(square);
+  const kriging = Math.hypot(size * Math.sqrt(square), amplitudeError);
   const total = part.calibration * Math.hypot(size * part.truncation, part.leave_one_out_ratio * kriging);
   return { truncation: size * part.truncation, kriging, total, relative: length > 0 ? total / length : 0 };
 }
@@ -62,10 +62,19 @@ export class Evaluator {
     return this.model.models[iModel].inputs.map((i) => unit[i]);
   }
 
-  /** Product of the factored parameters' powers over that at the reference. */
+  /** Product of the factored parameters' powers over that at the reference, times the amplitude. */
   factor(point) {
     return this.model.parameters.reduce(
-      (product, one, i) => product * (point[i] / one.reference) ** one.factor_power, 1);
+      (product, one, i) => product * (point[i] / one.reference) ** one.factor_power, this.amplitude(point, coefficients));
+  }
+
+  /** exp of the logarithm of the amplitude, or with `variances` its relative standard error. */
+  amplitude(point, evaluate) {
+    const { amplitude } = this.model;
+    if (!amplitude) return evaluate === variances ? 0 : 1;
+    const unit = this.unit(point);
+    const value = evaluate(amplitude, amplitude.inputs.map((i) => unit[i]))[0];
+    return evaluate === variances ? Math.sqrt(value) : Math.exp(value);
   }
 
   stiffnesses(point) {
@@ -104,7 +113,7 @@ export class Evaluator {
     const factor = this.factor(point);
     const v = of(displacement, variances);
     const length = Math.abs(factor) * fieldLength(displacement, of(displacement, coefficients));
-    const expected = estimateError(displacement, v, factor, length);
+    const expected = estimateError(displacement, v, factor, length, length * this.amplitude(point, variances));
     return {
       geometry: estimateError(geometry, of(geometry, variances), 1, geometry.size),
       displacement: expected,
