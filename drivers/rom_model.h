@@ -21,6 +21,8 @@ class TrainedModel {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     /// Of the deck that it was trained by.
     [[nodiscard]] const io::RomSection& section() const { return section_; }
+    /// It was trained without loads: displacements are 0.
+    [[nodiscard]] bool is_geometry_only() const { return is_geometry_only_; }
     /// The deck that it was trained by, if it is still where it was.
     [[nodiscard]] std::filesystem::path deck_path() const;
     [[nodiscard]] std::vector<std::string> overrides() const;
@@ -46,6 +48,7 @@ class TrainedModel {
     std::filesystem::path path_;
     io::ReducedModelFile file_;
     io::RomSection section_;
+    bool is_geometry_only_ = false;
 };
 
 /// What a model's file keeps beside it, for TrainedModel.

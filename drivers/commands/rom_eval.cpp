@@ -144,8 +144,7 @@ void print_errors(const char* name, const PredictionErrors& one) {
         100.0 * one.von_mises_max);
 }
 
-void print_table(const TrainedModel& trained, const Answer& answer) {
-    fmt::print("{}\n", describe_point(trained.model().parameters(), answer.evaluation.point));
+void print_extremes(const Answer& answer) {
     const Vector3& at = answer.extremes.von_mises_at;
     fmt::print("  largest displacement   {:.6g}, expected error {:.2g} %\n",
                answer.extremes.displacement, 100.0 * answer.errors.displacement.relative);
@@ -153,6 +152,16 @@ void print_table(const TrainedModel& trained, const Answer& answer) {
         "  largest von Mises      {:.6g} at ({:.4g}, {:.4g}, {:.4g}), expected error {:.2g} "
         "%\n",
         answer.extremes.von_mises, at[0], at[1], at[2], 100.0 * answer.errors.von_mises);
+}
+
+void print_table(const TrainedModel& trained, const Answer& answer) {
+    fmt::print("{}\n", describe_point(trained.model().parameters(), answer.evaluation.point));
+    if (trained.is_geometry_only()) {
+        fmt::print("  geometry               expected error {:.2g} %\n",
+                   100.0 * answer.errors.geometry.relative);
+    } else {
+        print_extremes(answer);
+    }
     fmt::print("  volume                 {:.6g}; det J {}\n", answer.volume,
                iga::to_string(answer.validity));
     if (answer.galerkin) {
@@ -177,17 +186,22 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common) {
     const rom::ReducedModel& model = trained.model();
     const VectorX point = trained.point_of(options.settings);
     trained.check_inside(point, options.is_forced);
+    if (options.galerkin && trained.is_geometry_only()) {
+        throw InputError("rom eval: --galerkin solves for displacements; {} has geometry only",
+                         trained.path().string());
+    }
     const io::Deck deck = trained.deck_at(point);
     const rom::FieldSampler sampler(
         model.space(), rom::make_sample_grids(*model.space(), rom::SampleRegion::volume));
     Answer answer;
     const Timer timer;
     answer.evaluation = model.evaluate(point);
-    const rom::FieldSamples fields = sampler.sample(answer.evaluation.control_points,
-                                                    answer.evaluation.displacement, deck.problem);
+    if (!trained.is_geometry_only()) {
+        answer.extremes = extremes_of(sampler.sample(answer.evaluation.control_points,
+                                                     answer.evaluation.displacement, deck.problem));
+    }
     answer.seconds = timer.seconds();
     answer.errors = model.errors(point);
-    answer.extremes = extremes_of(fields);
     const iga::MultiPatch<3> member = model.member(answer.evaluation);
     answer.validity = validity_of(member);
     if (answer.validity != iga::Validity::valid) {
