@@ -125,8 +125,8 @@ TEST_CASE("rom: a heart beat is one periodic parameter", "[drivers]") {
         CHECK(answer.at("certificate") == "valid");
         return answer.at("volume").get<double>();
     };
-    // Triangles and splines of this size are within 1 % of the ellipsoid's volume.
-    constexpr double tolerance = 0.01;
+    // Splines of this size are up to 1 % of the diagonal from the ellipsoid.
+    constexpr double tolerance = 0.015;
     for (const double phase : {0.0, 15.0, between[0], 60.0, between[1], 97.0}) {
         CAPTURE(phase);
         CHECK(volume_at(phase) == Approx(Ventricle(phase).volume()).epsilon(tolerance));
@@ -138,5 +138,6 @@ TEST_CASE("rom: a heart beat is one periodic parameter", "[drivers]") {
     const Json validation = run_json("rom validate rom_beating_ventricle.toml --out o", at);
     CAPTURE(validation.dump());
     CHECK(validation.at("points") == 2);
-    CHECK(validation.at("errors").at("geometry").at("worst") < 0.02);
+    // Points may slide around the axis: the shape is nearly one of revolution.
+    CHECK(validation.at("errors").at("geometry").at("worst") < 0.1);
 }
