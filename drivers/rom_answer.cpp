@@ -45,11 +45,12 @@ RomAnswer answer_at(const TrainedModel& trained, const VectorX& point,
     RomAnswer answer;
     const Timer timer;
     answer.evaluation = model.evaluate(point);
-    const rom::FieldSamples fields = sampler.sample(answer.evaluation.control_points,
-                                                    answer.evaluation.displacement, deck.problem);
+    if (!trained.is_geometry_only()) {
+        answer.extremes = extremes_of(sampler.sample(answer.evaluation.control_points,
+                                                     answer.evaluation.displacement, deck.problem));
+    }
     answer.seconds = timer.seconds();
     answer.errors = model.errors(point);
-    answer.extremes = extremes_of(fields);
     const iga::MultiPatch<3> member = model.member(answer.evaluation);
     answer.validity = validity_of(member);
     if (answer.validity != iga::Validity::valid) {

@@ -39,6 +39,7 @@ PredictionErrors measure_prediction(const rom::InnerProduct& product,
     const VectorX centred = about_centroid(control_points);
     errors.geometry = ratio(norm(product, dx), norm(product, centred));
     errors.geometry_max = ratio(largest_length(dx), 2.0 * largest_length(centred));
+    if (displacement.isZero(0.0) && predicted_displacement.isZero(0.0)) return errors;
     const VectorX full = sampler.sample(control_points, displacement, problem).von_mises;
     const VectorX predicted =
         sampler.sample(predicted_control_points, predicted_displacement, problem).von_mises;

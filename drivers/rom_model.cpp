@@ -60,6 +60,7 @@ rom::ReducedModelOptions model_options(const io::RomSection& section) {
     rom::ReducedModelOptions options;
     options.basis = section.is_stacked ? rom::BasisKind::stacked : rom::BasisKind::separate;
     options.product = section.is_l2 ? rom::ModeProduct::l2 : rom::ModeProduct::euclidean;
+    options.amplitude = section.has_amplitude ? rom::Amplitude::automatic : rom::Amplitude::none;
     options.n_modes = section.n_modes;
     options.tolerance = section.tolerance;
     options.kriging.correlation = section.correlation;
@@ -76,7 +77,8 @@ std::map<std::string, std::string> model_provenance(const RomSamples& samples) {
 TrainedModel::TrainedModel(const std::filesystem::path& path)
     : path_(path),
       file_(io::read_reduced_model(path)),
-      section_(deck_of(file_, path.filename(), overrides()).rom.value()) {}
+      section_(deck_of(file_, path.filename(), overrides()).rom.value()),
+      is_geometry_only_(!moves(deck_at(model().parts().reference_point))) {}
 
 std::filesystem::path TrainedModel::deck_path() const {
     const auto found = file_.provenance.find(deck_key);

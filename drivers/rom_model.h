@@ -22,6 +22,8 @@ class TrainedModel {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     /// Of the deck that it was trained by.
     [[nodiscard]] const io::RomSection& section() const { return section_; }
+    /// It was trained without loads: displacements are 0.
+    [[nodiscard]] bool is_geometry_only() const { return is_geometry_only_; }
     /// The deck that it was trained by, if it is still where it was.
     [[nodiscard]] std::filesystem::path deck_path() const;
     [[nodiscard]] std::vector<std::string> overrides() const;
@@ -49,6 +51,7 @@ class TrainedModel {
     std::filesystem::path path_;
     io::ReducedModelFile file_;
     io::RomSection section_;
+    bool is_geometry_only_ = false;
 };
 
 /// The answer of a model projected onto its displacement modes: linear problems are solved there,

@@ -10,6 +10,9 @@
 
 namespace couture::drivers {
 
+/// Something deforms the body: a load, a prescribed displacement or a temperature.
+[[nodiscard]] bool moves(const io::Deck& deck);
+
 /// Members of a deck's family and their solutions, each made from its parameters and the reference
 /// member alone, whatever else was made before.
 class RomSamples {
@@ -24,6 +27,8 @@ class RomSamples {
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
     [[nodiscard]] const io::RomSection& section() const { return *deck_.rom; }
     [[nodiscard]] const RomPlan& plan() const { return plan_; }
+    /// The deck has no loads: members are meshed, not solved.
+    [[nodiscard]] bool is_geometry_only() const { return !moves(deck_); }
     /// Takes over the geometries that were added to a store of the deck's design.
     void take_added(const io::SnapshotStore& store);
     /// From now on other points than the deck's design.
@@ -49,7 +54,8 @@ class RomSamples {
                                                const io::SnapshotStore& store) const;
 
     /// Displacements of a member, 3 n_nodes x n_loads, unknown 3 * node + component: linear
-    /// statics, all loads with one factorization, or the end of each run over time.
+    /// statics, all loads with one factorization, or the end of each run over time; 0 without
+    /// loads.
     ///
     /// @param points  of the parameters, one for each load, in their units
     /// @throws what the solvers throw; SolverError for a run that does not reach its end

@@ -32,7 +32,8 @@ FullSolution full_solution(const io::SnapshotStore& store, const std::string& si
 VectorX errors_by_modes(const rom::ReducedModel& model, const MatrixX& modes,
                         const rom::InnerProduct& product, const rom::Evaluation& evaluation,
                         const VectorX& displacement) {
-    const double size = std::sqrt(product.squared_norms(displacement)[0]);
+    const double norm = std::sqrt(product.squared_norms(displacement)[0]);
+    const double size = norm > 0.0 ? norm : 1.0;
     const VectorX& a = evaluation.displacement_coefficients;
     VectorX errors(a.size());
     VectorX u = evaluation.factor * model.displacement_mean();
@@ -68,6 +69,7 @@ rom::Calibration calibrate(const TrainedModel& trained, const Validation& valida
     if (expected_geometry.minCoeff() > rounding) {
         calibration.geometry = rom::calibration_factor(geometry, expected_geometry);
     }
+    if (trained.is_geometry_only()) return calibration;
     calibration.displacement = rom::calibration_factor(displacement, expected_displacement);
     calibration.von_mises =
         rom::calibration_factor(von_mises, calibration.displacement * expected_displacement);
@@ -82,13 +84,14 @@ struct Measure {
     const char* name;
     const char* title;
     double PredictionErrors::*value;
+    bool is_of_geometry = false;
 };
 
 constexpr std::array<Measure, 6> measures{{
     {"displacement", "displacement", &PredictionErrors::displacement},
     {"displacement_max", "  largest difference", &PredictionErrors::displacement_max},
-    {"geometry", "geometry", &PredictionErrors::geometry},
-    {"geometry_max", "  largest difference", &PredictionErrors::geometry_max},
+    {"geometry", "geometry", &PredictionErrors::geometry, true},
+    {"geometry_max", "  largest difference", &PredictionErrors::geometry_max, true},
     {"von_mises", "von Mises", &PredictionErrors::von_mises},
     {"von_mises_max", "  largest value", &PredictionErrors::von_mises_max},
 }};
@@ -102,6 +105,13 @@ VectorX sorted(std::vector<double> values) {
 VectorX log10_of(const VectorX& values) {
     constexpr double least = 1e-16;
     return values.cwiseMax(least).array().log10();
+}
+
+// Where a model is worst: by its displacement, or by its geometry if it has no other field.
+Statistics worst_of(const TrainedModel& trained, const Validation& validation) {
+    return statistics_of(validation.errors(trained.is_geometry_only()
+                                               ? &PredictionErrors::geometry
+                                               : &PredictionErrors::displacement));
 }
 
 }  // namespace
@@ -143,6 +153,10 @@ VectorX Validation::mean_by_modes() const {
 Validation validate_model(const TrainedModel& trained, const RomSamples& samples,
                           const io::SnapshotStore& store, bool with_galerkin) {
     const rom::ReducedModel& model = trained.model();
+    if (with_galerkin && trained.is_geometry_only()) {
+        throw InputError("rom validate: --galerkin solves for displacements; {} has geometry only",
+                         trained.path().string());
+    }
     const std::string signature = iga::signature(model.parts().reference);
     const rom::InnerProduct product =
         rom::mode_product(*model.space(), model.parts().options.product);
@@ -247,6 +261,7 @@ void print_validation(const TrainedModel& trained, const Validation& validation,
                    100.0 * one.median, 100.0 * one.worst);
     };
     for (const Measure& measure : measures) {
+        if (trained.is_geometry_only() && !measure.is_of_geometry) continue;
         print(measure.title, statistics_of(validation.errors(measure.value)));
     }
     if (validation.points.front().galerkin) {
@@ -255,7 +270,7 @@ void print_validation(const TrainedModel& trained, const Validation& validation,
             print(measure.title, statistics_of(validation.galerkin_errors(measure.value)));
         }
     }
-    const Statistics worst = statistics_of(validation.errors(&PredictionErrors::displacement));
+    const Statistics worst = worst_of(trained, validation);
     fmt::print("  worst at {}\n", describe_point(trained.model().parameters(),
                                                  validation.points[worst.i_worst].point));
 }
@@ -268,15 +283,26 @@ void draw_validation(const std::filesystem::path& path, const TrainedModel& trai
         return io::make_line_plot(values, {title, x, y});
     };
     std::vector<std::vector<io::Scene>> rows(2);
-    rows[0].push_back(plot(100.0 * sorted(validation.errors(&PredictionErrors::displacement)),
-                           "displacement", "points, best first", "relative error, %"));
-    rows[0].push_back(plot(100.0 * sorted(validation.errors(&PredictionErrors::von_mises)),
-                           "von Mises", "points, best first", "relative error, %"));
+    const auto draw_errors = [&](double PredictionErrors::*measure, const std::string& title) {
+        rows[0].push_back(plot(100.0 * sorted(validation.errors(measure)), title,
+                               "points, best first", "relative error, %"));
+    };
+    const auto draw_singular_values = [&](const rom::FieldPart& part, const std::string& title) {
+        const VectorX& sigma = parts.models[part.i_model].basis().singular_values;
+        rows[1].push_back(plot(log10_of(sigma / sigma[0]), "singular values of " + title,
+                               "mode, from 0", "log10 of value / largest"));
+    };
+    if (trained.is_geometry_only()) {
+        draw_errors(&PredictionErrors::geometry, "geometry");
+        draw_singular_values(parts.geometry, "geometries");
+        io::render_png(path, rows);
+        return;
+    }
+    draw_errors(&PredictionErrors::displacement, "displacement");
+    draw_errors(&PredictionErrors::von_mises, "von Mises");
     rows[1].push_back(plot(log10_of(validation.mean_by_modes()), "number of modes", "mode, from 0",
                            "log10 of the mean error of displacements"));
-    const VectorX& sigma = parts.models[parts.displacement.i_model].basis().singular_values;
-    rows[1].push_back(plot(log10_of(sigma / sigma[0]), "singular values of displacements",
-                           "mode, from 0", "log10 of value / largest"));
+    draw_singular_values(parts.displacement, "displacements");
     io::render_png(path, rows);
 }
 
@@ -285,7 +311,7 @@ std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
                                            const io::SnapshotStore& store,
                                            const Validation& validation, bool png) {
     const rom::ReducedModel& model = trained.model();
-    const Statistics worst = statistics_of(validation.errors(&PredictionErrors::displacement));
+    const Statistics worst = worst_of(trained, validation);
     const VectorX& point = validation.points[worst.i_worst].point;
     int i_stored = 0;
     while (samples.plan().point(i_stored, 0, 0) != point) ++i_stored;

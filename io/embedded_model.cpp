@@ -188,6 +188,10 @@ std::string to_embedded(const rom::ReducedModel& model, const ExportContent& con
         add_coefficients(body, parts.models[i].coefficients(),
                          model.kriging_inputs(static_cast<int>(i)));
     }
+    body.integer(parts.amplitude ? 1 : 0);
+    if (parts.amplitude) {
+        add_coefficients(body, *parts.amplitude, model.kriging_inputs(parts.displacement.i_model));
+    }
     add_part(body, parts.geometry, parts.calibration.geometry, model.geometry_mean(),
              model.geometry_modes());
     add_part(body, parts.displacement, parts.calibration.displacement, model.displacement_mean(),

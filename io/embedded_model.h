@@ -43,6 +43,8 @@ namespace couture::io {
 ///                              eigenvalues of K, n_points f
 ///       K^-1 F                 n_points x n_trend f
 ///       Cholesky factor        of F^T K^-1 F, n_trend^2 f
+///   has_amplitude              i; 1: a model of one coefficient, the logarithm of a factor on the
+///                              displacement
 ///   geometry, displacement
 ///     model                    i
 ///     n_modes, gram            i, n_modes^2 f

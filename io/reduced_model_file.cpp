@@ -28,6 +28,8 @@ const Names<rom::ModeProduct> product_names = {{rom::ModeProduct::l2, "l2"},
                                                {rom::ModeProduct::euclidean, "euclidean"}};
 const Names<rom::CorrelationKind> correlation_names = {
     {rom::CorrelationKind::matern_5_2, "matern_5_2"}, {rom::CorrelationKind::gaussian, "gaussian"}};
+const Names<rom::Amplitude> amplitude_names = {{rom::Amplitude::none, "none"},
+                                               {rom::Amplitude::automatic, "automatic"}};
 const Names<rom::Trend> trend_names = {{rom::Trend::constant, "constant"},
                                        {rom::Trend::linear, "linear"},
                                        {rom::Trend::quadratic, "quadratic"},
@@ -103,6 +105,7 @@ rom::KrigingOptions to_kriging(const std::string& file, const Json& object) {
 Json options_json(const rom::ReducedModelOptions& options) {
     return {{"basis", name_of(basis_names, options.basis)},
             {"product", name_of(product_names, options.product)},
+            {"amplitude", name_of(amplitude_names, options.amplitude)},
             {"n_modes", to_json(options.n_modes)},
             {"tolerance", options.tolerance},
             {"kriging", kriging_json(options.kriging)}};
@@ -112,6 +115,7 @@ rom::ReducedModelOptions to_options(const std::string& file, const Json& object)
     rom::ReducedModelOptions options;
     options.basis = choice_of(file, basis_names, object.at("basis"));
     options.product = choice_of(file, product_names, object.at("product"));
+    options.amplitude = choice_of(file, amplitude_names, object.at("amplitude"));
     options.n_modes = to_optional<int>(object.at("n_modes"));
     object.at("tolerance").get_to(options.tolerance);
     options.kriging = to_kriging(file, object.at("kriging"));
@@ -144,6 +148,11 @@ Json part_json(const rom::FieldPart& part) {
     return object;
 }
 
+Json coefficients_json(const rom::CoefficientModel& model) {
+    return {{"trend", name_of(trend_names, model.options().trend)},
+            {"n_factors", model.design().factors.size()}};
+}
+
 Json record_of(const ReducedModelFile& content) {
     const rom::ReducedModelParts& parts = content.model.parts();
     Json calibration;
@@ -151,11 +160,10 @@ Json record_of(const ReducedModelFile& content) {
                            [&](const char* name, const auto& value) { calibration[name] = value; });
     Json models = Json::array();
     for (const rom::FieldModel& model : parts.models) {
-        models.push_back({{"n_modes_asked", to_json(model.n_modes_asked())},
-                          {"rank", model.basis().rank},
-                          {"trend", name_of(trend_names, model.coefficients().options().trend)},
-                          {"remaining_energy", model.basis().remaining_energy},
-                          {"n_factors", model.coefficients().design().factors.size()}});
+        models.push_back(coefficients_json(model.coefficients()));
+        models.back()["n_modes_asked"] = to_json(model.n_modes_asked());
+        models.back()["rank"] = model.basis().rank;
+        models.back()["remaining_energy"] = model.basis().remaining_energy;
     }
     return {{"program", std::string("couture ") + COUTURE_VERSION},
             {"provenance", content.provenance},
@@ -164,13 +172,13 @@ Json record_of(const ReducedModelFile& content) {
             {"geometry", part_json(parts.geometry)},
             {"displacement", part_json(parts.displacement)},
             {"calibration", calibration},
-            {"models", models}};
+            {"models", models},
+            {"amplitude", parts.amplitude ? coefficients_json(*parts.amplitude) : Json()}};
 }
 
 // ---- the field models
 
-void write_model(hid_t group, const rom::FieldModel& model) {
-    const rom::CoefficientModel& coefficients = model.coefficients();
+void write_coefficients(hid_t group, const rom::CoefficientModel& coefficients) {
     const std::vector<rom::KrigingParameters> parameters = coefficients.parameters();
     MatrixX lengths(parameters.size(), coefficients.n_inputs());
     VectorX nuggets(parameters.size());
@@ -178,9 +186,6 @@ void write_model(hid_t group, const rom::FieldModel& model) {
         lengths.row(static_cast<Eigen::Index>(k)) = parameters[k].lengths.transpose();
         nuggets[static_cast<Eigen::Index>(k)] = parameters[k].nugget;
     }
-    write_matrix(group, "mean", model.mean());
-    write_matrix(group, "modes", model.basis().modes);
-    write_matrix(group, "singular_values", model.basis().singular_values);
     write_matrix(group, "coefficients", coefficients.training());
     write_matrix(group, "lengths", lengths);
     write_matrix(group, "nuggets", nuggets);
@@ -192,14 +197,16 @@ void write_model(hid_t group, const rom::FieldModel& model) {
     }
 }
 
-rom::FieldModel read_model(const Source& source, hid_t group, const Json& record,
-                           rom::KrigingOptions kriging) {
+void write_model(hid_t group, const rom::FieldModel& model) {
+    write_matrix(group, "mean", model.mean());
+    write_matrix(group, "modes", model.basis().modes);
+    write_matrix(group, "singular_values", model.basis().singular_values);
+    write_coefficients(group, model.coefficients());
+}
+
+rom::CoefficientModel read_coefficients(const Source& source, hid_t group, const Json& record,
+                                        rom::KrigingOptions kriging) {
     kriging.trend = choice_of(source.file, trend_names, record.at("trend"));
-    rom::PodBasis basis;
-    basis.modes = source.matrix(group, "modes");
-    basis.singular_values = source.matrix(group, "singular_values");
-    record.at("rank").get_to(basis.rank);
-    record.at("remaining_energy").get_to(basis.remaining_energy);
     rom::TensorDesign design;
     const Handle factors = source.group(group, "design");
     for (int g = 0; g < record.at("n_factors").get<int>(); ++g) {
@@ -216,10 +223,19 @@ rom::FieldModel read_model(const Source& source, hid_t group, const Json& record
     for (Eigen::Index k = 0; k < lengths.rows(); ++k) {
         parameters.push_back({lengths.row(k).transpose(), nuggets[k]});
     }
+    return {std::move(design), source.matrix(group, "coefficients"), kriging, parameters};
+}
+
+rom::FieldModel read_model(const Source& source, hid_t group, const Json& record,
+                           const rom::KrigingOptions& kriging) {
+    rom::PodBasis basis;
+    basis.modes = source.matrix(group, "modes");
+    basis.singular_values = source.matrix(group, "singular_values");
+    record.at("rank").get_to(basis.rank);
+    record.at("remaining_energy").get_to(basis.remaining_energy);
     return {source.matrix(group, "mean").reshaped(), std::move(basis),
             to_optional<int>(record.at("n_modes_asked")),
-            rom::CoefficientModel(std::move(design), source.matrix(group, "coefficients"), kriging,
-                                  parameters)};
+            read_coefficients(source, group, record, kriging)};
 }
 
 rom::FieldPart read_part(const Source& source, hid_t root, const std::string& name,
@@ -264,6 +280,10 @@ rom::ReducedModelParts read_parts(const Source& source, hid_t root, const Json& 
         parts.models.push_back(read_model(source, source.group(models, std::to_string(i)),
                                           record.at("models")[i], parts.options.kriging));
     }
+    if (const Json& amplitude = record.at("amplitude"); !amplitude.is_null()) {
+        parts.amplitude = read_coefficients(source, source.group(root, "amplitude"), amplitude,
+                                            parts.options.kriging);
+    }
     return parts;
 }
 
@@ -284,6 +304,9 @@ void write_reduced_model(const std::filesystem::path& path, const ReducedModelFi
         const Handle models = make_group(store, "models");
         for (std::size_t i = 0; i < parts.models.size(); ++i) {
             write_model(make_group(models, std::to_string(i)), parts.models[i]);
+        }
+        if (parts.amplitude) {
+            write_coefficients(make_group(store, "amplitude"), *parts.amplitude);
         }
         bytes = image_of(store);
     }

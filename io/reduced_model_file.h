@@ -34,6 +34,8 @@ struct ReducedModelFile {
 ///       design/<g>       points of each factor, n_g x d_g, in the unit cube
 ///       lengths          n_modes x n_inputs, nuggets n_modes x 1, of kriging
 ///       leave_one_out    n_points x n_modes, residuals; for readers other than this program
+///   /amplitude           if there is one: coefficients, design, lengths, nuggets, leave_one_out as
+///   above
 ///
 /// Equal models make equal files. The file appears whole or not at all.
 ///

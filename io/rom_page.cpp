@@ -313,6 +313,10 @@ Json page_json(const rom::ReducedModel& model, const ExportContent& content) {
                    parts.calibration.displacement, rows_of(model.displacement_mean(), nodes),
                    rows_of(model.displacement_modes(), nodes))},
         {"models", std::move(models)},
+        {"amplitude",
+         parts.amplitude
+             ? model_json(*parts.amplitude, model.kriging_inputs(parts.displacement.i_model))
+             : Json()},
         {"grids", std::move(grids)},
         {"colors", colors_json()}};
 }

@@ -248,6 +248,7 @@ std::optional<RomSection> read_rom_section(Section& top, const std::filesystem::
         result->n_modes = section.integer("modes", 1, most_modes);
         result->tolerance =
             section.number("tolerance", dimensions::none, {.low = 0.0, .high = 1.0}).value_or(0.0);
+        result->has_amplitude = section.choice("amplitude", {"automatic", "none"}) != "none";
         result->is_l2 = section.choice("inner_product", {"l2", "euclidean"}) != "euclidean";
         if (section.choice("correlation", {"matern_5_2", "gaussian"}) == "gaussian") {
             result->correlation = rom::CorrelationKind::gaussian;

@@ -52,6 +52,8 @@ struct RomSection {
     std::optional<int> n_modes;
     /// Relative error (1.14) of the snapshots that modes may leave; 0: the numerical rank.
     double tolerance = 0.0;
+    /// Displacements that point alike are learned as length and direction.
+    bool has_amplitude = true;
     /// Modes are orthonormal in L2 on the reference member, else in the Euclidean sense.
     bool is_l2 = true;
     rom::CorrelationKind correlation = rom::CorrelationKind::matern_5_2;

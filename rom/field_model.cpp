@@ -100,9 +100,8 @@ std::optional<CoefficientModel> with_parameters(const TensorDesign& design, cons
     return std::nullopt;
 }
 
-/// Kriging of coefficients at the accepted points. Where a design has holes its likelihood costs a
-/// hundred times more: lengths and nugget are then those of the complete part of it, if that is
-/// most of it.
+}  // namespace
+
 CoefficientModel learned_coefficients(const TensorDesign& design, const std::vector<int>& accepted,
                                       const MatrixX& values, const KrigingOptions& options) {
     const TensorDesign left = accepted_design(design, accepted);
@@ -121,6 +120,8 @@ CoefficientModel learned_coefficients(const TensorDesign& design, const std::vec
     }
     return {left, values, options};
 }
+
+namespace {
 
 FieldModel learned_model(const TensorDesign& design, const MatrixX& fields, VectorX mean,
                          const InnerProduct& product, const FieldModelOptions& options) {

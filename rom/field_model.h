@@ -55,6 +55,17 @@ class FieldModel {
     CoefficientModel coefficients_;
 };
 
+/// Kriging of coefficients at the accepted points of a design. Where a design has holes its
+/// likelihood costs a hundred times more: lengths and nugget are then those of the complete part of
+/// it, if that is most of it.
+///
+/// @param accepted  positions among the points, rising
+/// @param values    n_accepted x n_coefficients, the largest coefficients first
+[[nodiscard]] CoefficientModel learned_coefficients(const TensorDesign& design,
+                                                    const std::vector<int>& accepted,
+                                                    const MatrixX& values,
+                                                    const KrigingOptions& options);
+
 /// The design without the points whose fields were refused, a tensor product where that is left.
 ///
 /// @param accepted  positions of the others among the points, rising

@@ -89,12 +89,22 @@ FieldPart measured(FieldPart part, const FieldModel& model, const MatrixX& field
     return part;
 }
 
+FieldPart with_amplitude(FieldPart part, const CoefficientModel& amplitude) {
+    const VectorX errors = amplitude.leave_one_out().col(0).cwiseAbs();
+    const VectorX expected = amplitude.leave_one_out_variances().col(0).cwiseSqrt();
+    part.leave_one_out = std::hypot(part.leave_one_out, quantile(errors, leave_one_out_quantile));
+    part.leave_one_out_ratio = std::max(
+        part.leave_one_out_ratio, quantile(errors.cwiseQuotient(expected), leave_one_out_quantile));
+    return part;
+}
+
 ErrorEstimate estimate_error(const FieldPart& part, const VectorX& variances, double factor,
-                             double length, double calibration) {
+                             double length, double calibration, double amplitude_error) {
     const double size = std::abs(factor);
     ErrorEstimate error;
     error.truncation = size * part.truncation;
-    error.kriging = size * std::sqrt(variances.dot(part.gram.diagonal()));
+    error.kriging =
+        std::hypot(size * std::sqrt(variances.dot(part.gram.diagonal())), amplitude_error);
     error.leave_one_out = size * part.leave_one_out;
     error.total =
         calibration * std::hypot(error.truncation, part.leave_one_out_ratio * error.kriging);

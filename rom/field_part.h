@@ -44,6 +44,10 @@ struct FieldPart {
 [[nodiscard]] FieldPart measured(FieldPart part, const FieldModel& model, const MatrixX& fields,
                                  int n_components, const InnerProduct& product);
 
+/// The part of fields of unit length, with what leave-one-out says of the logarithm of their
+/// amplitude.
+[[nodiscard]] FieldPart with_amplitude(FieldPart part, const CoefficientModel& amplitude);
+
 /// Expected error of a field at a point; lengths as in FieldPart.
 struct ErrorEstimate {
     /// Of what the modes can't show.
@@ -61,8 +65,10 @@ struct ErrorEstimate {
 /// @param variances    of the field's coefficients
 /// @param factor       on the field
 /// @param length       of the field, that `relative` refers to
+/// @param amplitude_error  standard error of that length
 [[nodiscard]] ErrorEstimate estimate_error(const FieldPart& part, const VectorX& variances,
-                                           double factor, double length, double calibration);
+                                           double factor, double length, double calibration,
+                                           double amplitude_error = 0.0);
 
 struct ErrorEstimates {
     ErrorEstimate geometry;

@@ -103,6 +103,29 @@ class Trainer {
         return design;
     }
 
+    /// Lengths of the displacements (1 where refused) if all are within 60 degrees of the direction
+    /// that they have in common; else nothing.
+    [[nodiscard]] std::optional<VectorX> amplitudes(const InnerProduct& inner) const {
+        constexpr double least_cosine = 0.5;
+        const std::vector<int> accepted = accepted_columns(set_.displacements);
+        if (options_.amplitude == Amplitude::none || set_.design().n_parameters() == 0 ||
+            accepted.size() < 2) {
+            return {};
+        }
+        const VectorX size = lengths(set_.displacements(Eigen::all, accepted), inner);
+        if (!(size.minCoeff() > 0.0)) return {};
+        const MatrixX unit =
+            set_.displacements(Eigen::all, accepted) * size.cwiseInverse().asDiagonal();
+        const PodBasis direction = make_pod_basis(unit, inner, {.n_modes = 1});
+        const MatrixX cosines =
+            project(direction, inner, unit) / std::sqrt(inner.squared_norms(unit.col(0))[0]);
+        const double sign = cosines.sum() < 0.0 ? -1.0 : 1.0;
+        if ((sign * cosines).minCoeff() < least_cosine) return {};
+        VectorX all = VectorX::Ones(set_.displacements.cols());
+        all(accepted) = size;
+        return all;
+    }
+
     void train_separate(ReducedModelParts& parts) const {
         const InnerProduct inner = product(3);
         TensorDesign geometries;
@@ -111,12 +134,20 @@ class Trainer {
         }
         parts.models.emplace_back(geometries, set_.control_points, to_field(space_, set_.reference),
                                   inner, field_options());
-        parts.models.emplace_back(design(), set_.displacements,
-                                  VectorX::Zero(set_.displacements.rows()), inner, field_options());
+        const std::optional<VectorX> amplitude = amplitudes(inner);
+        const MatrixX fields = amplitude
+                                   ? set_.displacements * amplitude->cwiseInverse().asDiagonal()
+                                   : set_.displacements;
+        parts.models.emplace_back(design(), fields, VectorX::Zero(fields.rows()), inner,
+                                  field_options());
         parts.geometry = measure({}, parts.models[0], set_.control_points, inner);
         parts.displacement.i_model = 1;
-        parts.displacement =
-            measure(parts.displacement, parts.models[1], set_.displacements, inner);
+        parts.displacement = measure(parts.displacement, parts.models[1], fields, inner);
+        if (!amplitude) return;
+        const std::vector<int> accepted = accepted_columns(fields);
+        const VectorX logarithms = (*amplitude)(accepted).array().log();
+        parts.amplitude = learned_coefficients(design(), accepted, logarithms, options_.kriging);
+        parts.displacement = with_amplitude(parts.displacement, *parts.amplitude);
     }
 
     void train_stacked(ReducedModelParts& parts) const {
@@ -215,6 +246,14 @@ ReducedModel::ReducedModel(ReducedModelParts parts) : parts_(std::move(parts)) {
         }
         inputs_.push_back(std::move(inputs));
     }
+    if (parts_.amplitude &&
+        (parts_.amplitude->n_coefficients() != 1 ||
+         parts_.amplitude->n_inputs() != inputs_[parts_.displacement.i_model].size())) {
+        throw InputError(
+            "ReducedModel: the amplitude has {} coefficients of {} inputs; expected 1 of {}",
+            parts_.amplitude->n_coefficients(), parts_.amplitude->n_inputs(),
+            inputs_[parts_.displacement.i_model].size());
+    }
 }
 
 VectorX ReducedModel::inputs(int i_model, const VectorX& unit_point) const {
@@ -249,7 +288,17 @@ double ReducedModel::factor(const VectorX& point) const {
             product /= ratio;
         }
     }
+    if (parts_.amplitude) {
+        const VectorX x = inputs(parts_.displacement.i_model, parameters().to_unit(point));
+        product *= std::exp(parts_.amplitude->values(x)[0]);
+    }
     return product;
+}
+
+double ReducedModel::amplitude_standard_error(const VectorX& unit_point) const {
+    if (!parts_.amplitude) return 0.0;
+    const VectorX x = inputs(parts_.displacement.i_model, unit_point);
+    return std::sqrt(parts_.amplitude->variances(x)[0]);
 }
 
 VectorX ReducedModel::coefficients(const FieldPart& part, const VectorX& unit_point) const {
@@ -332,6 +381,18 @@ EvaluationGradient ReducedModel::gradient(const VectorX& point) const {
     gradient.control_points = part_gradient(parts_.geometry, unit);
     gradient.displacement = factor(point) * part_gradient(parts_.displacement, unit);
     const VectorX u = evaluate(point).displacement;
+    if (parts_.amplitude) {
+        const KrigingInputs& seen = inputs_[parts_.displacement.i_model];
+        const std::vector<int> of_inputs = seen.parameters();
+        const VectorX by_parameter = seen.slopes(unit);
+        const MatrixX slopes = parts_.amplitude->gradient(seen.at(unit));
+        for (std::size_t i = 0; i < of_inputs.size(); ++i) {
+            const auto k = static_cast<Eigen::Index>(i);
+            const Parameter& one = parameters().parameters()[of_inputs[i]];
+            gradient.displacement.col(of_inputs[i]) +=
+                u * (slopes(0, k) * by_parameter[k] / (one.upper - one.lower));
+        }
+    }
     for (int i = 0; i < parameters().size(); ++i) {
         if (parts_.factor_power[i] == 1 && point[i] == 0.0) {
             VectorX moved = point;
@@ -353,8 +414,9 @@ ErrorEstimates ReducedModel::errors(const VectorX& point) const {
                                      parts_.geometry.size, calibration.geometry);
     const double length =
         std::abs(scale) * parts_.displacement.length(coefficients(parts_.displacement, unit));
-    errors.displacement = estimate_error(parts_.displacement, variances(parts_.displacement, unit),
-                                         scale, length, calibration.displacement);
+    errors.displacement =
+        estimate_error(parts_.displacement, variances(parts_.displacement, unit), scale, length,
+                       calibration.displacement, length * amplitude_standard_error(unit));
     errors.von_mises = calibration.von_mises * errors.displacement.relative;
     return errors;
 }
@@ -369,8 +431,11 @@ VectorX ReducedModel::displacement_standard_errors(const VectorX& point) const {
 
 VectorX ReducedModel::displacement_error_field(const VectorX& point) const {
     const FieldPart& part = parts_.displacement;
-    const VectorX errors = model_of(part).standard_errors(variances(part, unit_point(point)));
-    return std::abs(factor(point)) * part_of(part, errors);
+    const VectorX unit = unit_point(point);
+    const VectorX errors = model_of(part).standard_errors(variances(part, unit));
+    const VectorX scaled = std::abs(factor(point)) * part_of(part, errors);
+    const VectorX by_amplitude = amplitude_standard_error(unit) * evaluate(point).displacement;
+    return (scaled.cwiseAbs2() + by_amplitude.cwiseAbs2()).cwiseSqrt();
 }
 
 MatrixX ReducedModel::displacement_modes() const {

@@ -16,6 +16,12 @@ enum class BasisKind {
     stacked    ///< modes of both in one vector, each scaled by its root mean square
 };
 
+/// How displacements of all sizes are learned.
+enum class Amplitude {
+    none,      ///< as they are
+    automatic  ///< where all point alike: of unit length, and the logarithm of their length
+};
+
 /// What modes are orthonormal in.
 enum class ModeProduct {
     l2,        ///< the mass matrix of the reference member
@@ -25,6 +31,8 @@ enum class ModeProduct {
 struct ReducedModelOptions {
     BasisKind basis = BasisKind::separate;
     ModeProduct product = ModeProduct::l2;
+    /// Of separate bases.
+    Amplitude amplitude = Amplitude::automatic;
     /// Of each basis, as in PodOptions.
     std::optional<int> n_modes = std::nullopt;
     double tolerance = 0.0;
@@ -48,6 +56,9 @@ struct ReducedModelParts {
     FieldPart geometry;
     FieldPart displacement;
     Calibration calibration;
+    /// Logarithm of the displacement's length, which its model's fields are multiplied by; nothing:
+    /// these are the displacements.
+    std::optional<CoefficientModel> amplitude = std::nullopt;
 };
 
 /// Values at a point. Fields as in SnapshotSet, units of the deck.
@@ -58,7 +69,8 @@ struct Evaluation {
     /// displacement's are those at the reference values of the factored parameters.
     VectorX geometry_coefficients;
     VectorX displacement_coefficients;
-    /// Of the factored parameters: the displacement is this times that of its coefficients.
+    /// Of the factored parameters and the amplitude: the displacement is this times that of its
+    /// coefficients.
     double factor = 1.0;
     VectorX control_points;
     VectorX displacement;
@@ -81,7 +93,8 @@ struct EvaluationGradient {
 /// Geometry and displacement of a part as functions of parameters, learned from full solutions.
 ///
 /// Source: [Maquart19] Sec. 7.2. Differs: by default geometry and displacement have modes of their
-/// own, and intensities and moduli that the displacement is proportional to are factored exactly.
+/// own, intensities and moduli that the displacement is proportional to are factored exactly, and
+/// where displacements point alike their length, which varies most, is learned by its logarithm.
 class ReducedModel {
   public:
     /// @throws InputError  as `check` of the snapshots, make_pod_basis and Kriging
@@ -134,8 +147,10 @@ class ReducedModel {
     [[nodiscard]] VectorX unit_point(const VectorX& point) const;
     /// Inputs of a field model at a unit point.
     [[nodiscard]] VectorX inputs(int i_model, const VectorX& unit_point) const;
-    /// Product of the factored parameters' powers over that at the reference.
+    /// Product of the factored parameters' powers over that at the reference, times the amplitude.
     [[nodiscard]] double factor(const VectorX& point) const;
+    /// Standard error of the amplitude's logarithm.
+    [[nodiscard]] double amplitude_standard_error(const VectorX& unit_point) const;
     [[nodiscard]] VectorX coefficients(const FieldPart& part, const VectorX& unit_point) const;
     [[nodiscard]] VectorX variances(const FieldPart& part, const VectorX& unit_point) const;
     /// Rows of fields of a model that a part has, scaled.

@@ -61,7 +61,9 @@ VerificationReport run_verification(const VerificationOptions& options) {
     const std::string filter = lower(options.filter);
     std::vector<std::string> names;
     bool found = false;
-    for (const Case& one : all_cases()) {
+    std::vector<Case> cases = all_cases();
+    cases.insert(cases.end(), options.more.begin(), options.more.end());
+    for (const Case& one : cases) {
         names.push_back("'" + one.name + "'");
         if (lower(one.name).find(filter) == std::string::npos) {
             continue;

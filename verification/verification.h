@@ -24,6 +24,8 @@ struct VerificationOptions {
     std::string filter;
     /// Run the long cases too.
     bool with_long = false;
+    /// Cases after those of `all_cases`.
+    std::vector<Case> more;
     /// Called with each row when it is known; may be empty.
     std::function<void(const Row&)> on_row;
 };

@@ -69,18 +69,25 @@ void print_errors(const char* name, const PredictionErrors& one) {
         100.0 * one.von_mises_max);
 }
 
-void print_table(const TrainedModel& trained, const Answer& answer) {
-    fmt::print("{}\n",
-               describe_point(trained.model().parameters(), answer.at_point.evaluation.point));
-    const Vector3& at = answer.at_point.extremes.von_mises_at;
+void print_extremes(const RomAnswer& answer) {
+    const Vector3& at = answer.extremes.von_mises_at;
     fmt::print("  largest displacement   {:.6g}, expected error {:.2g} %\n",
-               answer.at_point.extremes.displacement,
-               100.0 * answer.at_point.errors.displacement.relative);
+               answer.extremes.displacement, 100.0 * answer.errors.displacement.relative);
     fmt::print(
         "  largest von Mises      {:.6g} at ({:.4g}, {:.4g}, {:.4g}), expected error {:.2g} "
         "%\n",
-        answer.at_point.extremes.von_mises, at[0], at[1], at[2],
-        100.0 * answer.at_point.errors.von_mises);
+        answer.extremes.von_mises, at[0], at[1], at[2], 100.0 * answer.errors.von_mises);
+}
+
+void print_table(const TrainedModel& trained, const Answer& answer) {
+    fmt::print("{}\n",
+               describe_point(trained.model().parameters(), answer.at_point.evaluation.point));
+    if (trained.is_geometry_only()) {
+        fmt::print("  geometry               expected error {:.2g} %\n",
+                   100.0 * answer.at_point.errors.geometry.relative);
+    } else {
+        print_extremes(answer.at_point);
+    }
     fmt::print("  volume                 {:.6g}; det J {}\n", answer.at_point.volume,
                iga::to_string(answer.at_point.validity));
     if (answer.galerkin) {
@@ -105,6 +112,10 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common) {
     const rom::ReducedModel& model = trained.model();
     const VectorX point = trained.point_of(options.settings);
     trained.check_inside(point, options.is_forced);
+    if (options.galerkin && trained.is_geometry_only()) {
+        throw InputError("rom eval: --galerkin solves for displacements; {} has geometry only",
+                         trained.path().string());
+    }
     const io::Deck deck = trained.deck_at(point);
     const rom::FieldSampler sampler = answer_sampler(model);
     Answer answer;

@@ -22,18 +22,21 @@ struct BasisSummary {
     double truncation = 0.0;
     /// Of the field's length: 0.95 quantile of leave-one-out errors.
     double leave_one_out = 0.0;
+    /// Of kriging, as chosen.
+    std::string trend;
 };
 
-std::vector<BasisSummary> summarize(const rom::ReducedModel& model) {
+std::vector<BasisSummary> summarize(const rom::ReducedModel& model, bool is_geometry_only) {
     std::vector<BasisSummary> result;
     const rom::ReducedModelParts& parts = model.parts();
     const auto add = [&](const std::string& name, const rom::FieldPart& part) {
         const rom::FieldModel& field = parts.models[part.i_model];
         result.push_back({name, field.n_modes(), field.basis().relative_error(field.n_modes()),
-                          part.size > 0.0 ? part.leave_one_out / part.size : part.leave_one_out});
+                          part.size > 0.0 ? part.leave_one_out / part.size : part.leave_one_out,
+                          rom::to_string(field.coefficients().options().trend)});
     };
     add("geometry", parts.geometry);
-    add("displacement", parts.displacement);
+    if (!is_geometry_only) add("displacement", parts.displacement);
     return result;
 }
 
@@ -59,7 +62,8 @@ void print_json(const RomSamples& samples, const io::SnapshotStore& store,
         object["bases"].push_back({{"field", one.name},
                                    {"modes", one.n_modes},
                                    {"truncation", one.truncation},
-                                   {"leave_one_out", one.leave_one_out}});
+                                   {"leave_one_out", one.leave_one_out},
+                                   {"trend", one.trend}});
     }
     object["seconds"] = seconds;
     object["warnings"] = log::warnings();
@@ -72,13 +76,17 @@ void print_table(const RomSamples& samples, const io::SnapshotStore& store,
                  const fs::path& file, double seconds) {
     const StoreProgress made = progress_of(samples.plan(), store);
     fmt::print("{}\n", samples.deck().title);
-    fmt::print("  {} geometries x {} loads x {} materials, {} unknowns; refused {}\n",
-               samples.plan().n_geometries(), samples.plan().n_loads(),
-               samples.plan().n_materials(), 3 * model.n_nodes(), made.n_refused);
-    fmt::print("  {:<13} {:>6} {:>12} {:>14}\n", "basis", "modes", "truncation", "leave-one-out");
+    const RomPlan& plan = samples.plan();
+    fmt::print("  {} geometries{}, {} unknowns; refused {}\n", plan.n_geometries(),
+               samples.is_geometry_only()
+                   ? std::string(" without loads")
+                   : fmt::format(" x {} loads x {} materials", plan.n_loads(), plan.n_materials()),
+               3 * model.n_nodes(), made.n_refused);
+    fmt::print("  {:<13} {:>6} {:>12} {:>14} {:>10}\n", "basis", "modes", "truncation",
+               "leave-one-out", "trend");
     for (const BasisSummary& one : bases) {
-        fmt::print("  {:<13} {:>6} {:>12.2e} {:>14.2e}\n", one.name, one.n_modes, one.truncation,
-                   one.leave_one_out);
+        fmt::print("  {:<13} {:>6} {:>12.2e} {:>14.2e} {:>10}\n", one.name, one.n_modes,
+                   one.truncation, one.leave_one_out, one.trend);
     }
     fmt::print("  {:.1f} s; wrote {}\n", seconds, file.string());
 }
@@ -92,7 +100,7 @@ int run_rom_train(const RomTrainOptions& options, const CommonOptions& common) {
     if (options.retry) store.clear_failures();
     const auto trained = train_model(options, common, samples, store);
     if (!trained) return ExitCode::done;
-    const auto bases = summarize(trained->model);
+    const auto bases = summarize(trained->model, samples.is_geometry_only());
     if (common.json) {
         print_json(samples, store, bases, trained->model, trained->file, timer.seconds());
     } else if (!common.quiet) {

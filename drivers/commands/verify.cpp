@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "drivers/commands/commands.h"
+#include "drivers/rom_verification.h"
 #include "iga/core/log.h"
 #include "verification/table.h"
 
@@ -22,6 +23,7 @@ int run_verify(const VerifyOptions& options, const CommonOptions& common) {
     verification::VerificationOptions verify;
     verify.filter = options.filter;
     verify.with_long = options.with_long;
+    verify.more = reduced_model_cases();
     bool has_head = false;
     verify.on_row = [&](const verification::Row& row) {
         if (common.quiet && row.passed) {

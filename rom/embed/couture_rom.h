@@ -442,8 +442,9 @@ struct Part {
     }
 
     /// @param length  of the field, that `relative` refers to; negative: from its coefficients
+    /// @param amplitude_error  standard error of the logarithm of a factor on it
     ErrorEstimate estimate(const Vector& variances, const Vector& coefficients, double factor,
-                           double length) const {
+                           double length, double amplitude_error = 0.0) const {
         const double scale = std::abs(factor);
         double expected = 0.0;
         double square = size * size;
@@ -453,10 +454,10 @@ struct Part {
         }
         ErrorEstimate error;
         error.truncation = scale * truncation;
-        error.kriging = scale * std::sqrt(expected);
+        if (length < 0.0) length = scale * std::sqrt(std::max(square, 0.0));
+        error.kriging = std::hypot(scale * std::sqrt(expected), length * amplitude_error);
         error.total =
             calibration * std::hypot(error.truncation, leave_one_out_ratio * error.kriging);
-        if (length < 0.0) length = scale * std::sqrt(std::max(square, 0.0));
         error.relative = length > 0.0 ? error.total / length : 0.0;
         return error;
     }
@@ -717,7 +718,7 @@ class Model {
     Answer evaluate(const std::vector<double>& point) const {
         Answer answer;
         const std::vector<double> unit = unit_point(point, answer.warnings);
-        const double factor = factor_at(point);
+        const double factor = factor_at(point, unit);
         answer.geometry_coefficients = models_[geometry_->i_model].values(unit);
         answer.displacement_coefficients = models_[displacement_->i_model].values(unit);
         estimate_errors(unit, factor, answer);
@@ -750,6 +751,10 @@ class Model {
         reader.expect(n_nodes > 0, "there are no nodes");
         const std::size_t n_models = reader.count("numbers of models");
         for (std::size_t i = 0; i < n_models; ++i) models_.emplace_back(reader, n);
+        if (reader.integer(0, 1, "kind of amplitude") != 0) {
+            amplitude_.emplace(reader, n);
+            reader.expect(amplitude_->n_coefficients() == 1, "coefficients of the amplitude");
+        }
         geometry_.emplace(reader, 3 * n_nodes, models_);
         displacement_.emplace(reader, 3 * n_nodes, models_);
         von_mises_calibration_ = reader.number();
@@ -798,13 +803,14 @@ class Model {
         return unit;
     }
 
-    double factor_at(const std::vector<double>& point) const {
+    double factor_at(const std::vector<double>& point, const std::vector<double>& unit) const {
         double product = 1.0;
         for (std::size_t i = 0; i < point.size(); ++i) {
             const double ratio = point[i] / parameters_[i].reference;
             if (parameters_[i].factor_power > 0) product *= ratio;
             if (parameters_[i].factor_power < 0) product /= ratio;
         }
+        if (amplitude_) product *= std::exp(amplitude_->values(unit)[0]);
         return product;
     }
 
@@ -818,7 +824,8 @@ class Model {
         answer.geometry_error = geometry.estimate(models_[geometry.i_model].variances(unit),
                                                   answer.geometry_coefficients, 1.0, geometry.size);
         answer.displacement_error =
-            displacement.estimate(variances, answer.displacement_coefficients, factor, -1.0);
+            displacement.estimate(variances, answer.displacement_coefficients, factor, -1.0,
+                                  amplitude_ ? std::sqrt(amplitude_->variances(unit)[0]) : 0.0);
         answer.von_mises_error = von_mises_calibration_ * answer.displacement_error.relative;
     }
 
@@ -856,6 +863,8 @@ class Model {
     std::string no_stress_;
     std::vector<Parameter> parameters_;
     std::vector<detail::CoefficientModel> models_;
+    /// Of the logarithm of a factor on the displacement.
+    std::optional<detail::CoefficientModel> amplitude_;
     std::optional<detail::Part> geometry_;
     std::optional<detail::Part> displacement_;
     double von_mises_calibration_ = 1.0;

@@ -22,12 +22,12 @@ function largest(values, points) {
 }
 
 /** rom/field_part.h, estimate_error. */
-function estimateError(part, v, factor, length) {
+function estimateError(part, v, factor, length, amplitudeError = 0) {
   const n = v.length;
   let square = 0;
   for (let k = 0; k < n; ++k) square += v[k] * part.gram[k * n + k];
   const size = Math.abs(factor);
-  const kriging = size * Math.sqrt(square);
+  const kriging = Math.hypot(size * Math.sqrt(square), amplitudeError);
   const total = part.calibration * Math.hypot(size * part.truncation, part.leave_one_out_ratio * kriging);
   return { truncation: size * part.truncation, kriging, total, relative: length > 0 ? total / length : 0 };
 }
@@ -58,8 +58,8 @@ export class Evaluator {
     return this.model.parameters.map((one, i) => (point[i] - one.lower) / (one.upper - one.lower));
   }
 
-  inputs(iModel, unit) {
-    const { inputs, waves } = this.model.models[iModel];
+  /** What a model of coefficients sees of a point. */
+  inputs({ inputs, waves }, unit) {
     // Of a periodic parameter its cosine (1) and its sine (2).
     return inputs.map((i, k) => {
       if (waves[k] === 0) return unit[i];
@@ -68,10 +68,19 @@ export class Evaluator {
     });
   }
 
-  /** Product of the factored parameters' powers over that at the reference. */
+  /** Product of the factored parameters' powers over that at the reference, times the amplitude. */
   factor(point) {
     return this.model.parameters.reduce(
-      (product, one, i) => product * (point[i] / one.reference) ** one.factor_power, 1);
+      (product, one, i) => product * (point[i] / one.reference) ** one.factor_power, this.amplitude(point, coefficients));
+  }
+
+  /** exp of the logarithm of the amplitude, or with `variances` its relative standard error. */
+  amplitude(point, evaluate) {
+    const { amplitude } = this.model;
+    if (!amplitude) return evaluate === variances ? 0 : 1;
+    const unit = this.unit(point);
+    const value = evaluate(amplitude, this.inputs(amplitude, unit))[0];
+    return evaluate === variances ? Math.sqrt(value) : Math.exp(value);
   }
 
   stiffnesses(point) {
@@ -90,7 +99,7 @@ export class Evaluator {
   evaluate(point) {
     const { geometry, displacement, models } = this.model;
     const unit = this.unit(point);
-    const all = models.map((model, i) => coefficients(model, this.inputs(i, unit)));
+    const all = models.map((model) => coefficients(model, this.inputs(model, unit)));
     const a = all[geometry.i_model];
     const b = all[displacement.i_model];
     addModes(geometry, a, 1, this.x);
@@ -106,11 +115,11 @@ export class Evaluator {
   errors(point) {
     const { geometry, displacement, models } = this.model;
     const unit = this.unit(point);
-    const of = (part, evaluate) => evaluate(models[part.i_model], this.inputs(part.i_model, unit));
+    const of = (part, evaluate) => evaluate(models[part.i_model], this.inputs(models[part.i_model], unit));
     const factor = this.factor(point);
     const v = of(displacement, variances);
     const length = Math.abs(factor) * fieldLength(displacement, of(displacement, coefficients));
-    const expected = estimateError(displacement, v, factor, length);
+    const expected = estimateError(displacement, v, factor, length, length * this.amplitude(point, variances));
     return {
       geometry: estimateError(geometry, of(geometry, variances), 1, geometry.size),
       displacement: expected,

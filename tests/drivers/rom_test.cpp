@@ -115,6 +115,26 @@ TEST_CASE("rom: a model answers what the full solution says", "[drivers]") {
     CHECK(fs::exists(folder.path() / "v/m.vtu"));
 }
 
+TEST_CASE("rom: a deck without loads has a model of its geometry alone", "[drivers]") {
+    const TemporaryFolder folder;
+    std::string shape = model.substr(0, model.find("[[traction]]"));
+    shape += "[rom]\ndesign = \"full\"\nsamples = 5\n" +
+             parameters.substr(0, parameters.find("[[rom.parameter]]\nname"));
+    io::write_text(folder.path() / "f.toml", shape);
+    const auto trained = run_couture("rom train f.toml --out o", folder.path());
+    REQUIRE(trained.exit_code == 0);
+    CHECK_THAT(trained.output, Contains("5 geometries without loads"));
+    CHECK_THAT(trained.output, !Contains("displacement"));
+    const Json validated = run_json("rom validate f.toml --out o -n 4", folder.path());
+    CHECK(validated["errors"]["geometry"]["worst"] < 1e-3);
+    CHECK(validated["errors"]["displacement"]["worst"] == 0.0);
+    const auto answer = run_couture("rom eval o/f.rom --set hole_radius=0.9", folder.path());
+    CHECK_THAT(answer.output, Contains("geometry") && !Contains("von Mises"));
+    const auto refused = run_couture("rom eval o/f.rom --galerkin", folder.path());
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.errors, Contains("has geometry only"));
+}
+
 TEST_CASE("rom: stores and models are the same however the work was split", "[drivers]") {
     const TemporaryFolder folder;
     io::write_text(folder.path() / "f.toml", deck);

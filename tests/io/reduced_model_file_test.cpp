@@ -99,6 +99,18 @@ TEST_CASE("reduced model file: read back it evaluates to the same bits", "[io]")
     CHECK(parts.models[0].missing_modes() == written.model.parts().models[0].missing_modes());
 }
 
+TEST_CASE("reduced model file: with an amplitude", "[io]") {
+    const TemporaryFolder folder;
+    rom::SnapshotSet set = random_family();
+    for (Eigen::Index j = 1; j < set.displacements.cols(); ++j) {
+        set.displacements.col(j) = (1.0 + static_cast<double>(j)) * set.displacements.col(0);
+    }
+    const ReducedModelFile written{rom::ReducedModel(set, {}), "", {}};
+    REQUIRE(written.model.parts().amplitude);
+    write_reduced_model(folder / "part.rom", written);
+    check_equal(written.model, read_reduced_model(folder / "part.rom").model);
+}
+
 TEST_CASE("reduced model file: equal models make equal files", "[io]") {
     const TemporaryFolder folder;
     write_reduced_model(folder / "a.rom", trained({}));

@@ -72,7 +72,48 @@ SnapshotSet random_family() {
     return set;
 }
 
+/// Displacements that grow by a factor of 150 along the geometry and turn a little.
+VectorX growing(double size, double force, Eigen::Index n) {
+    const MatrixX shapes = random_design(2, static_cast<int>(n), 9).array() - 0.5;
+    return std::exp(5.0 * size) * force * (shapes.col(0) + 0.2 * size * shapes.col(1));
+}
+
+SnapshotSet growing_family() {
+    SnapshotSet set = random_family();
+    for (int i = 0; i < 15; ++i) {
+        set.displacements.col(i) =
+            growing(0.25 * (i / 3), 1.0 + 0.5 * (i % 3), set.displacements.rows());
+    }
+    return set;
+}
+
 }  // namespace
+
+TEST_CASE("ReducedModel: where displacements point alike, their length is learned apart", "[rom]") {
+    const SnapshotSet set = growing_family();
+    const ReducedModel model(set, {});
+    REQUIRE(model.parts().amplitude);
+    const ReducedModel plain(set, {.amplitude = Amplitude::none});
+    CHECK_FALSE(plain.parts().amplitude);
+    const Vector2 point(0.4, 1.3);
+    const VectorX expected = growing(0.4, 1.3, set.displacements.rows());
+    const double error = relative_error(model.evaluate(point).displacement, expected);
+    CHECK(error < 0.01);
+    CHECK(error < 0.2 * relative_error(plain.evaluate(point).displacement, expected));
+    CHECK(model.errors(point).displacement.relative > 0.1 * error);
+    const EvaluationGradient gradient = model.gradient(point);
+    for (int i = 0; i < 2; ++i) {
+        const Vector2 step = 1e-5 * Vector2::Unit(i);
+        const VectorX difference = (model.evaluate(point + step).displacement -
+                                    model.evaluate(point - step).displacement) /
+                                   2e-5;
+        CHECK(relative_error(gradient.displacement.col(i), difference) < 1e-4);
+    }
+    // One direction and its opposite are not alike.
+    SnapshotSet turned = set;
+    turned.displacements.col(4) *= -1.0;
+    CHECK_FALSE(ReducedModel(turned, {}).parts().amplitude);
+}
 
 TEST_CASE("ReducedModel: a family of rank r is recovered exactly", "[rom]") {
     REQUIRE(separate().parts().models[0].n_modes() == 2);
