@@ -1,10 +1,8 @@
 #include "meshing/volume/surface_fit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "iga/core/error.h"
 #include "iga/spline/bspline_basis.h"
@@ -205,40 +203,6 @@ SplineFit fit(const iga::TensorSpace<d>& given, MatrixX net, const MatrixX& grid
     return result;
 }
 
-// How far a surface is from folding over where a grid of points does not: the least of its scaled
-// Jacobian, about the grid's normals, over that of the grid, at points of each cell.
-double least_ratio_to_grid(const iga::Patch<2>& patch, const MatrixX& grid,
-                           const std::array<int, 2>& n) {
-    const auto point = [&](int i, int j) -> Vector3 { return grid.col(i + n[0] * j); };
-    const auto sine = [](const Vector3& a, const Vector3& b, const Vector3& normal) {
-        return a.cross(b).dot(normal) / (a.norm() * b.norm());
-    };
-    constexpr std::array<double, 4> places{0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0};
-    double least = 1.0;
-    for (int j = 0; j + 1 < n[1]; ++j) {
-        for (int i = 0; i + 1 < n[0]; ++i) {
-            const Vector3 first = point(i + 1, j) - point(i, j);
-            const Vector3 second = point(i + 1, j + 1) - point(i, j + 1);
-            const Vector3 third = point(i, j + 1) - point(i, j);
-            const Vector3 fourth = point(i + 1, j + 1) - point(i + 1, j);
-            for (const double t : places) {
-                for (const double s : places) {
-                    const Vector3 a = (1.0 - t) * first + t * second;
-                    const Vector3 b = (1.0 - s) * third + s * fourth;
-                    const Vector3 normal = a.cross(b).normalized();
-                    const double of_grid = sine(a, b, normal);
-                    // Singular corners of the grid say nothing.
-                    constexpr double singular = 1e-3;
-                    if (!(of_grid > singular)) continue;
-                    const auto J = patch.jacobian({(i + s) / (n[0] - 1.0), (j + t) / (n[1] - 1.0)});
-                    least = std::min(least, sine(J.col(0), J.col(1), normal) / of_grid);
-                }
-            }
-        }
-    }
-    return least;
-}
-
 }  // namespace
 
 SplineFit fit_curve(const iga::KnotVector& knots, const MatrixX& points,
@@ -260,33 +224,7 @@ SplineFit fit_surface(const iga::TensorSpace<2>& space, const MatrixX& net, cons
         throw InputError("fit_surface: {} x {} points for a grid of {} x {}", points.rows(),
                          points.cols(), n[0], n[1]);
     }
-    const MatrixX start = fill_coons<2>(space, net);
-    iga::TensorSpace<2> unit_space = space;
-    for (auto& knots : unit_space.knots) knots = knots.rescaled(0.0, 1.0);
-    // Samples that moved may pull the inside over the border, which does not follow them.
-    constexpr double unfolded = 0.1;
-    constexpr double stiffer = 100.0;
-    constexpr double most_fairness = 1.0;
-    std::optional<SplineFit> best;
-    double best_ratio = 0.0;
-    for (FitOptions tried = options;
-         !best || (best_ratio < unfolded && tried.fairness <= most_fairness);) {
-        SplineFit found = fit<2>(space, start, points, n, tried);
-        const double ratio =
-            least_ratio_to_grid(iga::Patch<2>(unit_space, found.control_points), points, n);
-        if (!best || ratio > best_ratio) {
-            best = std::move(found);
-            best_ratio = ratio;
-        }
-        if (tried.n_corrections > 0) {
-            tried.n_corrections = 0;
-        } else if (tried.fairness > 0.0) {
-            tried.fairness *= stiffer;
-        } else {
-            break;
-        }
-    }
-    return std::move(*best);
+    return fit<2>(space, fill_coons<2>(space, net), points, n, options);
 }
 
 void check_fit_options(const FitOptions& options) {

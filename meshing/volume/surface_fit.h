@@ -32,8 +32,7 @@ struct SplineFit {
                                   const FitOptions& options = {});
 
 /// The surface with a given border that is near the points of a grid: least squares with a little
-/// thin-plate energy for the control points inside. Where it would fold over though the grid does
-/// not, samples keep their parameters, and if that is not enough the energy weighs more.
+/// thin-plate energy for the control points inside.
 ///
 /// @param net  n_basis x 3; inner rows have no meaning
 /// @param points  3 x (n[0] n[1]), first direction fastest
