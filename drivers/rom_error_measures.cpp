@@ -26,6 +26,17 @@ double ratio(double error, double size) { return size > 0.0 ? error / size : err
 
 }  // namespace
 
+double displacement_error(const rom::InnerProduct& product, const VectorX& displacement,
+                          const VectorX& predicted) {
+    return ratio(norm(product, predicted - displacement), norm(product, displacement));
+}
+
+double geometry_error(const rom::InnerProduct& product, const VectorX& control_points,
+                      const VectorX& predicted) {
+    return ratio(norm(product, predicted - control_points),
+                 norm(product, about_centroid(control_points)));
+}
+
 PredictionErrors measure_prediction(const rom::InnerProduct& product,
                                     const rom::FieldSampler& sampler, const iga::Problem& problem,
                                     const VectorX& control_points, const VectorX& displacement,
@@ -33,12 +44,12 @@ PredictionErrors measure_prediction(const rom::InnerProduct& product,
                                     const VectorX& predicted_displacement) {
     PredictionErrors errors;
     const VectorX du = predicted_displacement - displacement;
-    errors.displacement = ratio(norm(product, du), norm(product, displacement));
+    errors.displacement = displacement_error(product, displacement, predicted_displacement);
     errors.displacement_max = ratio(largest_length(du), largest_length(displacement));
     const VectorX dx = predicted_control_points - control_points;
-    const VectorX centred = about_centroid(control_points);
-    errors.geometry = ratio(norm(product, dx), norm(product, centred));
-    errors.geometry_max = ratio(largest_length(dx), 2.0 * largest_length(centred));
+    errors.geometry = geometry_error(product, control_points, predicted_control_points);
+    errors.geometry_max =
+        ratio(largest_length(dx), 2.0 * largest_length(about_centroid(control_points)));
     if (displacement.isZero(0.0) && predicted_displacement.isZero(0.0)) return errors;
     const VectorX full = sampler.sample(control_points, displacement, problem).von_mises;
     const VectorX predicted =

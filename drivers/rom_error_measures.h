@@ -21,6 +21,12 @@ struct PredictionErrors {
     double von_mises_max = 0.0;
 };
 
+/// PredictionErrors::displacement, and PredictionErrors::geometry.
+[[nodiscard]] double displacement_error(const rom::InnerProduct& product,
+                                        const VectorX& displacement, const VectorX& predicted);
+[[nodiscard]] double geometry_error(const rom::InnerProduct& product, const VectorX& control_points,
+                                    const VectorX& predicted);
+
 /// @param control_points, displacement  of the full solution, 3 n_nodes numbers
 /// @param predicted_control_points, predicted_displacement  of the model
 [[nodiscard]] PredictionErrors measure_prediction(

@@ -54,10 +54,7 @@ iga::Problem without_loads(iga::Problem problem) {
 iga::MultiPatch<3> as_volume(io::AnyMultiPatch geometry, const io::Deck& deck) {
     auto* volume = std::get_if<iga::MultiPatch<3>>(&geometry);
     if (volume == nullptr) {
-        throw InputError(
-            "{}: reduced models are made of volumes; this geometry lies in the plane: take the "
-            "solid (for example \"plate_with_hole_3d\")",
-            deck.geometry.source);
+        throw InputError("{}: {}", deck.geometry.source, rom_needs_volume);
     }
     return std::move(*volume);
 }

@@ -10,6 +10,11 @@
 
 namespace couture::drivers {
 
+/// Why there are no reduced models of plane geometries, and what to do.
+inline constexpr const char* rom_needs_volume =
+    "reduced models are made of volumes; this geometry lies in the plane: take the solid (for "
+    "example \"plate_with_hole_3d\")";
+
 /// Something deforms the body: a load, a prescribed displacement or a temperature.
 [[nodiscard]] bool moves(const io::Deck& deck);
 

@@ -1,6 +1,6 @@
 #include "drivers/rom_validation.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +18,6 @@
 namespace couture::drivers {
 
 namespace {
-
-struct FullSolution {
-    VectorX control_points;
-    VectorX displacement;
-};
-
-FullSolution full_solution(const io::SnapshotStore& store, const std::string& signature, int i) {
-    return {iga::flatten(store.geometry(i, signature)), store.solution(i, 0, signature).col(0)};
-}
 
 // Errors of the displacement with the first 1, 2, ... modes.
 VectorX errors_by_modes(const rom::ReducedModel& model, const MatrixX& modes,
@@ -114,6 +105,47 @@ Statistics worst_of(const TrainedModel& trained, const Validation& validation) {
                                                : &PredictionErrors::displacement));
 }
 
+io::Scene draw_learning(const std::vector<LearningPoint>& learning) {
+    VectorX n_geometries(static_cast<Eigen::Index>(learning.size()));
+    VectorX errors(n_geometries.size());
+    for (Eigen::Index k = 0; k < errors.size(); ++k) {
+        n_geometries[k] = learning[k].n_geometries;
+        errors[k] = 100.0 * learning[k].error;
+    }
+    return io::make_line_plot(n_geometries, errors,
+                              {"number of geometries", "geometries", "mean relative error, %"});
+}
+
+// The samples grey, the points of validation blue, the worst red and last.
+io::Scene draw_design(const TrainedModel& trained, const RomPlan& design,
+                      const Validation& validation) {
+    constexpr io::Color grey{0.70, 0.72, 0.75};
+    constexpr io::Color blue{0.12, 0.38, 0.68};
+    constexpr io::Color red{0.78, 0.16, 0.12};
+    std::vector<io::ParallelAxis> axes;
+    for (const rom::Parameter& one : trained.model().parameters().parameters()) {
+        axes.push_back({one.name, one.lower, one.upper});
+    }
+    const auto n_axes = static_cast<Eigen::Index>(axes.size());
+    MatrixX samples(design.n_snapshots(), n_axes);
+    Eigen::Index row = 0;
+    for (int g = 0; g < design.n_geometries(); ++g) {
+        for (int l = 0; l < design.n_loads(); ++l) {
+            for (int m = 0; m < design.n_materials(); ++m) {
+                samples.row(row++) = design.point(g, l, m).transpose();
+            }
+        }
+    }
+    MatrixX points(static_cast<Eigen::Index>(validation.points.size()), n_axes);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        points.row(i) = validation.points[i].point.transpose();
+    }
+    const MatrixX worst = points.row(worst_of(trained, validation).i_worst);
+    return io::make_parallel_plot(axes,
+                                  {{samples, grey, 1.0}, {points, blue, 1.5}, {worst, red, 3.0}},
+                                  "samples grey, points of validation blue, the worst red");
+}
+
 }  // namespace
 
 Statistics statistics_of(const std::vector<double>& values) {
@@ -150,25 +182,37 @@ VectorX Validation::mean_by_modes() const {
     return sum / static_cast<double>(points.size());
 }
 
-Validation validate_model(const TrainedModel& trained, const RomSamples& samples,
-                          const io::SnapshotStore& store, bool with_galerkin) {
+std::vector<SolvedPoint> solved_points(const RomSamples& samples, const io::SnapshotStore& store,
+                                       const iga::MultiPatch<3>& reference) {
+    const std::string signature = iga::signature(reference);
+    std::vector<SolvedPoint> solved;
+    for (int i = 0; i < samples.plan().n_geometries(); ++i) {
+        if (!store.has_solution(i, 0)) continue;
+        solved.push_back({samples.plan().point(i, 0, 0), iga::flatten(store.geometry(i, signature)),
+                          store.solution(i, 0, signature).col(0)});
+    }
+    return solved;
+}
+
+Validation validate_model(const TrainedModel& trained, const std::vector<SolvedPoint>& solved,
+                          bool with_galerkin) {
     const rom::ReducedModel& model = trained.model();
     if (with_galerkin && trained.is_geometry_only()) {
         throw InputError("rom validate: --galerkin solves for displacements; {} has geometry only",
                          trained.path().string());
     }
-    const std::string signature = iga::signature(model.parts().reference);
+    if (solved.empty()) {
+        throw InputError("rom validate: no point was solved; see what was refused above");
+    }
     const rom::InnerProduct product =
         rom::mode_product(*model.space(), model.parts().options.product);
     const rom::FieldSampler sampler(
         model.space(), rom::make_sample_grids(*model.space(), rom::SampleRegion::volume));
     const MatrixX modes = model.displacement_modes();
     Validation validation;
-    for (int i = 0; i < samples.plan().n_geometries(); ++i) {
-        if (!store.has_solution(i, 0)) continue;
-        const FullSolution full = full_solution(store, signature, i);
+    for (const SolvedPoint& full : solved) {
         ValidationPoint one;
-        one.point = samples.plan().point(i, 0, 0);
+        one.point = full.point;
         const io::Deck deck = trained.deck_at(one.point);
         const rom::Evaluation evaluation = model.evaluate(one.point);
         const auto measure = [&](const VectorX& displacement) {
@@ -182,10 +226,7 @@ Validation validate_model(const TrainedModel& trained, const RomSamples& samples
             one.galerkin = measure(solve_projected(model, evaluation, deck).displacement);
         }
         validation.points.push_back(std::move(one));
-        log::detail(fmt::format("rom: compared {} of {}", i + 1, samples.plan().n_geometries()));
-    }
-    if (validation.points.empty()) {
-        throw InputError("rom validate: no point was solved; see what was refused above");
+        log::detail(fmt::format("rom: compared {} of {}", validation.points.size(), solved.size()));
     }
     validation.calibration = calibrate(trained, validation, model.parts().calibration);
     return validation;
@@ -207,6 +248,11 @@ std::string validation_json(const TrainedModel& trained, const Validation& valid
     }
     const VectorX by_modes = validation.mean_by_modes();
     object["error_by_modes"] = std::vector<double>(by_modes.begin(), by_modes.end());
+    object["error_by_geometries"] = nlohmann::ordered_json::array();
+    for (const LearningPoint& one : validation.learning) {
+        object["error_by_geometries"].push_back(
+            {{"geometries", one.n_geometries}, {"error", one.error}});
+    }
     object["calibration"] = {{"geometry", validation.calibration.geometry},
                              {"displacement", validation.calibration.displacement},
                              {"von_mises", validation.calibration.von_mises}};
@@ -270,19 +316,26 @@ void print_validation(const TrainedModel& trained, const Validation& validation,
             print(measure.title, statistics_of(validation.galerkin_errors(measure.value)));
         }
     }
+    std::vector<std::string> learning;
+    for (const LearningPoint& one : validation.learning) {
+        learning.push_back(fmt::format("{:.4f} of {}", 100.0 * one.error, one.n_geometries));
+    }
+    if (!learning.empty()) {
+        fmt::print("  mean by geometries     {}\n", fmt::join(learning, ", "));
+    }
     const Statistics worst = worst_of(trained, validation);
     fmt::print("  worst at {}\n", describe_point(trained.model().parameters(),
                                                  validation.points[worst.i_worst].point));
 }
 
 void draw_validation(const std::filesystem::path& path, const TrainedModel& trained,
-                     const Validation& validation) {
+                     const RomPlan& design, const Validation& validation) {
     const rom::ReducedModelParts& parts = trained.model().parts();
     const auto plot = [](const VectorX& values, const std::string& title, const std::string& x,
                          const std::string& y) {
         return io::make_line_plot(values, {title, x, y});
     };
-    std::vector<std::vector<io::Scene>> rows(2);
+    std::vector<std::vector<io::Scene>> rows(3);
     const auto draw_errors = [&](double PredictionErrors::*measure, const std::string& title) {
         rows[0].push_back(plot(100.0 * sorted(validation.errors(measure)), title,
                                "points, best first", "relative error, %"));
@@ -295,30 +348,27 @@ void draw_validation(const std::filesystem::path& path, const TrainedModel& trai
     if (trained.is_geometry_only()) {
         draw_errors(&PredictionErrors::geometry, "geometry");
         draw_singular_values(parts.geometry, "geometries");
-        io::render_png(path, rows);
-        return;
+    } else {
+        draw_errors(&PredictionErrors::displacement, "displacement");
+        draw_errors(&PredictionErrors::von_mises, "von Mises");
+        rows[1].push_back(plot(log10_of(validation.mean_by_modes()), "number of modes",
+                               "mode, from 0", "log10 of the mean error of displacements"));
+        draw_singular_values(parts.displacement, "displacements");
     }
-    draw_errors(&PredictionErrors::displacement, "displacement");
-    draw_errors(&PredictionErrors::von_mises, "von Mises");
-    rows[1].push_back(plot(log10_of(validation.mean_by_modes()), "number of modes", "mode, from 0",
-                           "log10 of the mean error of displacements"));
-    draw_singular_values(parts.displacement, "displacements");
+    if (!validation.learning.empty()) rows[2].push_back(draw_learning(validation.learning));
+    rows[2].push_back(draw_design(trained, design, validation));
     io::render_png(path, rows);
 }
 
 std::vector<std::string> write_worst_point(const std::filesystem::path& stem,
-                                           const TrainedModel& trained, const RomSamples& samples,
-                                           const io::SnapshotStore& store,
+                                           const TrainedModel& trained,
+                                           const std::vector<SolvedPoint>& solved,
                                            const Validation& validation, bool png) {
     const rom::ReducedModel& model = trained.model();
     const Statistics worst = worst_of(trained, validation);
-    const VectorX& point = validation.points[worst.i_worst].point;
-    int i_stored = 0;
-    while (samples.plan().point(i_stored, 0, 0) != point) ++i_stored;
-    const FullSolution full =
-        full_solution(store, iga::signature(model.parts().reference), i_stored);
-    const rom::Evaluation evaluation = model.evaluate(point);
-    io::Deck deck = trained.deck_at(point);
+    const SolvedPoint& full = solved[worst.i_worst];
+    const rom::Evaluation evaluation = model.evaluate(full.point);
+    io::Deck deck = trained.deck_at(full.point);
     deck.output.vtu = true;
     deck.output.png = png;
     std::vector<std::string> files;

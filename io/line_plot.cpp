@@ -83,31 +83,93 @@ CurvePiece mark(double x, double y) {
     return line(points, line_color, 3.0, true);
 }
 
+// Seen from above, with room for the axes' numbers.
+void look_down(const std::string& title, Scene& scene) {
+    scene.title = title;
+    scene.view_direction = -Vector3::UnitZ();
+    scene.up = Vector3::UnitY();
+    scene.show_axes = false;
+    scene.frame = ViewFrame{.center = {0.47 * width, 0.47 * height}, .height = 1.35 * height};
+}
+
+void require_finite(const MatrixX& values, const char* plot) {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+        if (!std::isfinite(values.data()[k])) {
+            throw InputError("{}: value {} is {}; it must be finite", plot, k, values.data()[k]);
+        }
+    }
+}
+
 }  // namespace
 
 Scene make_line_plot(const VectorX& values, const LinePlotLabels& labels) {
+    return make_line_plot(
+        VectorX::LinSpaced(values.size(), 0.0, static_cast<double>(values.size() - 1)), values,
+        labels);
+}
+
+Scene make_line_plot(const VectorX& x_values, const VectorX& values, const LinePlotLabels& labels) {
     if (values.size() == 0) throw InputError("make_line_plot: no values; there is nothing to show");
-    for (Eigen::Index k = 0; k < values.size(); ++k) {
-        if (!std::isfinite(values[k])) {
-            throw InputError("make_line_plot: value {} is {}; it must be finite", k, values[k]);
-        }
+    if (x_values.size() != values.size()) {
+        throw InputError("make_line_plot: {} x for {} values", x_values.size(), values.size());
     }
-    const Axis x(0.0, static_cast<double>(values.size() - 1), 1.0);
+    require_finite(x_values, "make_line_plot");
+    require_finite(values, "make_line_plot");
+    const Axis x(x_values.minCoeff(), x_values.maxCoeff(), 1.0);
     const Axis y(values.minCoeff(), values.maxCoeff(), 0.0);
     Scene scene;
     add_axes(x, y, labels, scene);
     MatrixX points(values.size(), 3);
     for (Eigen::Index k = 0; k < values.size(); ++k) {
-        points.row(k) << width * x.fraction(static_cast<double>(k)), height * y.fraction(values[k]),
-            0.0;
+        points.row(k) << width * x.fraction(x_values[k]), height * y.fraction(values[k]), 0.0;
         scene.curves.push_back(mark(points(k, 0), points(k, 1)));
     }
     if (values.size() > 1) scene.curves.push_back(line(points, line_color, 2.2));
-    scene.title = labels.title;
-    scene.view_direction = -Vector3::UnitZ();
-    scene.up = Vector3::UnitY();
-    scene.show_axes = false;
-    scene.frame = ViewFrame{.center = {0.47 * width, 0.47 * height}, .height = 1.35 * height};
+    look_down(labels.title, scene);
+    return scene;
+}
+
+Scene make_parallel_plot(const std::vector<ParallelAxis>& axes,
+                         const std::vector<ParallelLines>& lines, const std::string& title) {
+    if (axes.empty()) throw InputError("make_parallel_plot: no axes; there is nothing to show");
+    const auto n_axes = static_cast<Eigen::Index>(axes.size());
+    const auto at = [&](Eigen::Index k) {
+        return n_axes == 1 ? 0.5 * width
+                           : width * static_cast<double>(k) / static_cast<double>(n_axes - 1);
+    };
+    Scene scene;
+    for (const ParallelLines& group : lines) {
+        if (group.points.cols() != n_axes) {
+            throw InputError("make_parallel_plot: points of {} values for {} axes",
+                             group.points.cols(), n_axes);
+        }
+        require_finite(group.points, "make_parallel_plot");
+        for (Eigen::Index i = 0; i < group.points.rows(); ++i) {
+            MatrixX points(n_axes, 3);
+            for (Eigen::Index k = 0; k < n_axes; ++k) {
+                const ParallelAxis& axis = axes[k];
+                points.row(k) << at(k),
+                    height * (group.points(i, k) - axis.low) / (axis.high - axis.low), 0.0;
+            }
+            scene.curves.push_back(line(points, group.color, group.width));
+        }
+    }
+    for (Eigen::Index k = 0; k < n_axes; ++k) {
+        const ParallelAxis& axis = axes[k];
+        if (!(axis.high > axis.low)) {
+            throw InputError("make_parallel_plot: axis '{}' goes from {} to {}; it must rise",
+                             axis.name, axis.low, axis.high);
+        }
+        scene.curves.push_back(segment(at(k), 0.0, at(k), height, axis_color));
+        // Every other name lower, as they are wider than the gaps.
+        const double lower = k % 2 == 0 ? 0.0 : 0.06;
+        scene.labels.push_back(
+            {.position = {at(k), -0.05, 0.0}, .text = fmt::format("{:.6g}", axis.low)});
+        scene.labels.push_back(
+            {.position = {at(k), height + 0.04, 0.0}, .text = fmt::format("{:.6g}", axis.high)});
+        scene.labels.push_back({.position = {at(k), -0.11 - lower, 0.0}, .text = axis.name});
+    }
+    look_down(title, scene);
     return scene;
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "drivers/commands/commands.h"
 #include "drivers/deck_check.h"
@@ -9,6 +10,7 @@
 #include "drivers/prepared_surface.h"
 #include "drivers/probes.h"
 #include "drivers/remesher.h"
+#include "drivers/rom_samples.h"
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
@@ -41,28 +43,50 @@ void check_problem(const io::Deck& deck, const iga::Space<d>& space) {
     }
 }
 
+/// The design of a reduced model, and that what is factored can be.
 template <int d>
-int check_on(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+std::optional<RomPlan> check_rom(const SolveOptions& options, const io::Deck& deck,
+                                 const iga::SpacePtr<d>& space) {
+    if (!deck.rom) return {};
+    const RomSamples samples(options.deck, options.overrides);
+    if constexpr (d == 3) {
+        samples.check_factored(space);
+    } else {
+        throw InputError("{}: {}", deck.path.filename().string(), rom_needs_volume);
+    }
+    return samples.plan();
+}
+
+template <int d>
+int check_on(const SolveOptions& options, const io::Deck& deck, const iga::MultiPatch<d>& geometry,
              const CommonOptions& common) {
     check_deck<d>(deck, geometry);
     static_cast<void>(locate_probes<d>(deck, geometry));
     const auto space = make_space<d>(deck, geometry);
     static_cast<void>(make_remeshing<d>(deck, space->geometry()));
-    check_problem<d>(deck, *space);
+    // Nothing is solved of shapes alone.
+    if (!deck.rom || moves(deck)) check_problem<d>(deck, *space);
+    const std::optional<RomPlan> plan = check_rom<d>(options, deck, space);
     const int n_components = deck.problem.physics == iga::Physics::poisson ? 1 : d;
     const int n_unknowns = n_components * space->n_dofs();
     if (common.json) {
-        const nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
-                                               {"status", "valid"},
-                                               {"deck", deck.path.string()},
-                                               {"title", deck.title},
-                                               {"patches", geometry.n_patches()},
-                                               {"unknowns", n_unknowns},
-                                               {"warnings", log::warnings()}};
+        nlohmann::ordered_json object = {{"program", "couture " COUTURE_VERSION},
+                                         {"status", "valid"},
+                                         {"deck", deck.path.string()},
+                                         {"title", deck.title},
+                                         {"patches", geometry.n_patches()},
+                                         {"unknowns", n_unknowns}};
+        if (plan) object["snapshots"] = plan->n_snapshots();
+        object["warnings"] = log::warnings();
         fmt::print("{}\n", object.dump(2));
     } else if (!common.quiet) {
         fmt::print("{}: valid; patches {}, unknowns {}\n", deck.path.filename().string(),
                    geometry.n_patches(), n_unknowns);
+        if (plan) {
+            fmt::print("  {} geometries x {} loads x {} materials = {} snapshots\n",
+                       plan->n_geometries(), plan->n_loads(), plan->n_materials(),
+                       plan->n_snapshots());
+        }
     }
     return ExitCode::done;
 }
@@ -105,7 +129,7 @@ int run_check(const SolveOptions& options, const CommonOptions& common) {
     const io::AnyMultiPatch geometry = load_geometry(deck);
     return std::visit(
         [&]<int d>(const iga::MultiPatch<d>& multipatch) {
-            return check_on<d>(deck, multipatch, common);
+            return check_on<d>(options, deck, multipatch, common);
         },
         geometry);
 }

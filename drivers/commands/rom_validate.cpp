@@ -2,8 +2,11 @@
 
 #include "drivers/commands/commands.h"
 #include "drivers/rom_campaign.h"
+#include "drivers/rom_learning_curve.h"
+#include "drivers/rom_training.h"
 #include "drivers/rom_validation.h"
 #include "iga/core/error.h"
+#include "iga/core/log.h"
 #include "iga/core/text_hash.h"
 #include "iga/core/timer.h"
 #include "io/atomic_file.h"
@@ -30,6 +33,7 @@ std::string validation_folder(const RomSamples& samples, const RomValidateOption
 int run_rom_validate(const RomValidateOptions& options, const CommonOptions& common) {
     const Timer timer;
     const RomTrainOptions& campaign = options.campaign;
+    RomSamples design(campaign.deck, campaign.overrides);
     RomSamples samples(campaign.deck, campaign.overrides);
     const std::filesystem::path folder = rom_folder(campaign);
     const std::string name = campaign.deck.stem().string();
@@ -58,7 +62,15 @@ int run_rom_validate(const RomValidateOptions& options, const CommonOptions& com
 
     TrainedModel trained(model_file);
     trained.require_job(training);
-    const Validation validation = validate_model(trained, samples, store, options.galerkin);
+    const std::vector<SolvedPoint> solved =
+        solved_points(samples, store, trained.model().parts().reference);
+    Validation validation = validate_model(trained, solved, options.galerkin);
+    design.take_added(training);
+    if (progress_of(design.plan(), training).n_missing == 0) {
+        log::info("rom: learning again from parts of the geometries");
+        validation.learning = learning_curve(trained, read_snapshots(design, *reference, training),
+                                             solved, validation);
+    }
     rom::ReducedModel calibrated = trained.model();
     calibrated.set_calibration(validation.calibration);
     io::write_reduced_model(model_file,
@@ -69,12 +81,12 @@ int run_rom_validate(const RomValidateOptions& options, const CommonOptions& com
     files.push_back(stem.string() + ".csv");
     io::write_text(files.back(), validation_csv(trained, validation));
     for (const std::string& file :
-         write_worst_point(stem, trained, samples, store, validation, options.png)) {
+         write_worst_point(stem, trained, solved, validation, options.png)) {
         files.push_back(file);
     }
     if (options.png) {
         files.push_back(stem.string() + ".png");
-        draw_validation(files.back(), trained, validation);
+        draw_validation(files.back(), trained, design.plan(), validation);
     }
     const int n_refused = progress_of(samples.plan(), store).n_refused;
     files.push_back(stem.string() + ".json");

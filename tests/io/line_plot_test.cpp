@@ -46,3 +46,29 @@ TEST_CASE("line plot: one value, equal values; none or infinite ones are refused
     CHECK_THROWS_WITH(make_line_plot(VectorX{{1.0, std::numeric_limits<double>::infinity()}}, {}),
                       Catch::Contains("value 1 is inf"));
 }
+
+TEST_CASE("line plot: numbers of their own along x", "[io]") {
+    const Scene scene = make_line_plot(VectorX{{10.0, 20.0, 40.0}}, VectorX{{1.0, 1.0, 1.0}}, {});
+    const MatrixX& points = polyline(scene);
+    CHECK(points(2, 0) - points(1, 0) == Approx(2.0 * (points(1, 0) - points(0, 0))));
+    CHECK_THROWS_AS(make_line_plot(VectorX{{1.0}}, VectorX{{1.0, 2.0}}, {}), InputError);
+}
+
+TEST_CASE("parallel plot: a point is a line through its values on all axes", "[io]") {
+    const std::vector<ParallelAxis> axes{{"a", 0.0, 2.0}, {"b", 10.0, 20.0}, {"c", -1.0, 1.0}};
+    const MatrixX point{{1.0, 20.0, -1.0}};
+    const Scene scene = make_parallel_plot(axes, {{point, Color{}, 1.0}}, "design");
+    const MatrixX& drawn = scene.curves.front().points;
+    const double height = drawn(1, 1);
+    CHECK(drawn(0, 1) == Approx(0.5 * height));
+    CHECK(drawn(2, 1) == Approx(0.0).margin(1e-12));
+    CHECK(drawn(1, 0) - drawn(0, 0) == Approx(drawn(2, 0) - drawn(1, 0)));
+    CHECK(scene.title == "design");
+
+    CHECK_THROWS_AS(make_parallel_plot({}, {}, ""), InputError);
+    CHECK_THROWS_WITH(make_parallel_plot({{"a", 1.0, 1.0}}, {}, ""), Catch::Contains("'a'"));
+    const MatrixX short_point{{1.0, 2.0}};
+    CHECK_THROWS_AS(make_parallel_plot(axes, {{short_point, Color{}, 1.0}}, ""), InputError);
+    const MatrixX no_number{{1.0, std::numeric_limits<double>::quiet_NaN(), 0.0}};
+    CHECK_THROWS_AS(make_parallel_plot(axes, {{no_number, Color{}, 1.0}}, ""), InputError);
+}
