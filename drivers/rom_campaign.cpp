@@ -116,8 +116,15 @@ std::optional<TrainedFile> train_model(const RomTrainOptions& options, const Com
     TrainedFile trained{rom::ReducedModel(read_snapshots(samples, *reference, store),
                                           model_options(samples.section())),
                         rom_folder(options) / (options.deck.stem().string() + ".rom")};
-    for (const rom::FieldModel& field : trained.model.parts().models) {
-        if (const auto message = field.missing_modes()) log::warn("rom: " + *message);
+    const rom::ReducedModelParts& parts = trained.model.parts();
+    const auto warn_of_modes = [&](const rom::FieldPart& part, const std::string& name) {
+        const auto message = parts.models[part.i_model].missing_modes();
+        if (message) log::warn(fmt::format("rom: {}: {}", name, *message));
+    };
+    const bool is_one_basis = parts.models.size() == 1;
+    warn_of_modes(parts.geometry, is_one_basis ? "stacked basis" : "geometry");
+    if (!is_one_basis && !samples.is_geometry_only()) {
+        warn_of_modes(parts.displacement, "displacement");
     }
     io::remove_leftovers(trained.file.parent_path(), trained.file.stem().string());
     io::write_reduced_model(trained.file,

@@ -23,6 +23,9 @@ constexpr double largest_nugget = 1.0;
 /// Values that are constant but for rounding.
 constexpr double least_variance = std::numeric_limits<double>::min();
 
+/// Of trend functions that are left out: their coefficients are 0 and add nothing to variances.
+constexpr double weight_of_none = 1e300;
+
 /// First input of each factor.
 std::vector<int> offsets(const TensorDesign& design) {
     std::vector<int> first;
@@ -64,7 +67,11 @@ struct LeastSquares {
 LeastSquares least_squares(const CorrelationMatrix& K, const MatrixX& F, const VectorX& values) {
     LeastSquares result;
     result.K_inverse_F = K.solve(F);
-    const Eigen::LLT<MatrixX> normal(F.transpose() * result.K_inverse_F);
+    MatrixX products = F.transpose() * result.K_inverse_F;
+    for (Eigen::Index j = 0; j < F.cols(); ++j) {
+        if (F.col(j).isZero(0.0)) products(j, j) = weight_of_none;
+    }
+    const Eigen::LLT<MatrixX> normal(products);
     result.L = normal.matrixL();
     result.beta = normal.solve(result.K_inverse_F.transpose() * values);
     const VectorX residual = values - F * result.beta;
@@ -82,7 +89,7 @@ void check(const TensorDesign& design, const VectorX& values, const KrigingOptio
     if (!values.allFinite()) {
         throw InputError("Kriging: a value is not finite; leave its point out");
     }
-    const int n_terms = n_trend_functions(options.trend, design.n_parameters());
+    const int n_terms = n_independent_terms(design.points(), options.trend);
     if (values.size() <= n_terms) {
         throw InputError("Kriging: {} points; a trend of {} terms needs at least {}", values.size(),
                          n_terms, n_terms + 1);
@@ -129,32 +136,9 @@ Bounds search_bounds(const TensorDesign& design, const KrigingOptions& options) 
     return bounds;
 }
 
-KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
-                              const KrigingOptions& options) {
-    const Bounds bounds = search_bounds(design, options);
-    const auto n = static_cast<int>(bounds.lower.size());
-    const MatrixX starts = latin_hypercube_design(n, options.n_starts, options.seed);
-    const auto objective = [&](const VectorX& x, VectorX& gradient) {
-        return kriging_objective(design, values, options, x, gradient);
-    };
-    BoundedMinimum best{{}, std::numeric_limits<double>::infinity()};
-    for (int i = 0; i < options.n_starts; ++i) {
-        const VectorX start =
-            bounds.lower + starts.row(i).transpose().cwiseProduct(bounds.upper - bounds.lower);
-        const BoundedMinimum found =
-            bounded_minimum(objective, start, bounds.lower, bounds.upper, same_likelihood);
-        if (found.value < best.value) {
-            best = found;
-        }
-    }
-    return to_parameters(best.x, design.n_parameters(), options);
-}
-
-}  // namespace
-
-double kriging_objective(const TensorDesign& design, const VectorX& values,
-                         const KrigingOptions& options, const VectorX& log_parameters,
-                         VectorX& gradient) {
+/// As kriging_objective. @param F  trend functions at the points
+double objective(const TensorDesign& design, const MatrixX& F, const VectorX& values,
+                 const KrigingOptions& options, const VectorX& log_parameters, VectorX& gradient) {
     const int n_inputs = design.n_parameters();
     const KrigingParameters parameters = to_parameters(log_parameters, n_inputs, options);
     const std::vector<MatrixX> factors =
@@ -165,7 +149,6 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
         return std::numeric_limits<double>::infinity();
     }
     const auto n = static_cast<double>(values.size());
-    const MatrixX F = trend_functions(design.points(), options.trend);
     const LeastSquares fit = least_squares(*K, F, values);
     const std::vector<int> first = offsets(design);
     for (int g = 0; g < static_cast<int>(factors.size()); ++g) {
@@ -181,6 +164,37 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
             (K->inverse_diagonal().sum() - fit.weights.squaredNorm() / fit.variance);
     }
     return 0.5 * (n * std::log(fit.variance) + K->log_determinant());
+}
+
+KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
+                              const KrigingOptions& options) {
+    const Bounds bounds = search_bounds(design, options);
+    const auto n = static_cast<int>(bounds.lower.size());
+    const MatrixX starts = latin_hypercube_design(n, options.n_starts, options.seed);
+    const MatrixX F = independent_trend(design.points(), options.trend);
+    const auto minimised = [&](const VectorX& x, VectorX& gradient) {
+        return objective(design, F, values, options, x, gradient);
+    };
+    BoundedMinimum best{{}, std::numeric_limits<double>::infinity()};
+    for (int i = 0; i < options.n_starts; ++i) {
+        const VectorX start =
+            bounds.lower + starts.row(i).transpose().cwiseProduct(bounds.upper - bounds.lower);
+        const BoundedMinimum found =
+            bounded_minimum(minimised, start, bounds.lower, bounds.upper, same_likelihood);
+        if (found.value < best.value) {
+            best = found;
+        }
+    }
+    return to_parameters(best.x, design.n_parameters(), options);
+}
+
+}  // namespace
+
+double kriging_objective(const TensorDesign& design, const VectorX& values,
+                         const KrigingOptions& options, const VectorX& log_parameters,
+                         VectorX& gradient) {
+    return objective(design, independent_trend(design.points(), options.trend), values, options,
+                     log_parameters, gradient);
 }
 
 Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options)
@@ -208,7 +222,7 @@ void Kriging::fit(const VectorX& values) {
             design_.n_points(), parameters_.nugget);
     }
     LeastSquares fit =
-        least_squares(*K_, trend_functions(design_.points(), options_.trend), values);
+        least_squares(*K_, independent_trend(design_.points(), options_.trend), values);
     K_inverse_F_ = std::move(fit.K_inverse_F);
     trend_factor_ = std::move(fit.L);
     beta_ = std::move(fit.beta);

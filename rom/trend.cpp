@@ -27,6 +27,33 @@ MatrixX trend_functions(const MatrixX& points, Trend trend) {
     return F;
 }
 
+MatrixX independent_trend(const MatrixX& points, Trend trend) {
+    MatrixX F = trend_functions(points, trend);
+    MatrixX Q(F.rows(), F.cols());
+    Eigen::Index n = 0;
+    for (Eigen::Index j = 0; j < F.cols(); ++j) {
+        VectorX rest = F.col(j);
+        // Twice: rounding of the first pass is as large as what may be left.
+        for (int pass = 0; pass < 2; ++pass) {
+            rest -= Q.leftCols(n) * (Q.leftCols(n).transpose() * rest);
+        }
+        constexpr double dependent = 1e-8;
+        if (rest.norm() > dependent * F.col(j).norm()) {
+            Q.col(n++) = rest.normalized();
+        } else {
+            F.col(j).setZero();
+        }
+    }
+    return F;
+}
+
+int n_independent_terms(const MatrixX& points, Trend trend) {
+    const MatrixX F = independent_trend(points, trend);
+    int n = 0;
+    for (Eigen::Index j = 0; j < F.cols(); ++j) n += F.col(j).isZero(0.0) ? 0 : 1;
+    return n;
+}
+
 MatrixX trend_slopes(const VectorX& point, Trend trend) {
     const auto d = static_cast<int>(point.size());
     MatrixX slopes = MatrixX::Zero(n_trend_functions(trend, d), d);

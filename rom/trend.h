@@ -25,7 +25,14 @@ enum class Trend {
 /// @param trend   not automatic
 [[nodiscard]] MatrixX trend_functions(const MatrixX& points, Trend trend);
 
-/// Their derivatives at a point: n_functions x n_inputs.
+/// The functions at the points of a design: those that are combinations of the ones before there,
+/// such as products of inputs that never vary together, are 0.
+[[nodiscard]] MatrixX independent_trend(const MatrixX& points, Trend trend);
+
+/// Number of those that are not.
+[[nodiscard]] int n_independent_terms(const MatrixX& points, Trend trend);
+
+/// Derivatives of all functions at a point: n_functions x n_inputs.
 [[nodiscard]] MatrixX trend_slopes(const VectorX& point, Trend trend);
 
 }  // namespace couture::rom

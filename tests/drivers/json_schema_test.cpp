@@ -219,6 +219,8 @@ range = [0.6, 1.4]
     check_command("train f.toml", "rom_train_schema.md");
     check_command("validate f.toml -n 3 --galerkin", "rom_validate_schema.md");
     check_command("eval out/f/f.rom --solve --galerkin", "rom_eval_schema.md");
+    check_command("export out/f/f.rom --html f.html", "rom_export_schema.md");
+    check_command("export out/f/f.rom --binary f.bin", "rom_export_schema.md");
     check_command("train g.toml", "rom_train_schema.md");
     check_command("optimize out/g/g.rom --stress-limit 1000 --displacement-limit 1 --starts 2",
                   "rom_optimize_schema.md");

@@ -164,6 +164,38 @@ TEST_CASE("Kriging: a quadratic trend gives back a paraboloid, far outside too",
     CHECK(model.value(x) == Approx(paraboloid(x)).epsilon(1e-6));
 }
 
+TEST_CASE("Kriging: trends leave out what a design can't tell apart", "[rom]") {
+    // Along the axes no two inputs vary together; the last one has two levels, its square is
+    // itself.
+    const MatrixX star = star_design(3, 2);
+    const MatrixX levels{{0.0}, {1.0}};
+    const TensorDesign design{{star, levels}};
+    const MatrixX points = design.points();
+    CHECK(n_trend_functions(Trend::quadratic, 4) == 15);
+    // 1, four inputs, three squares, and products of the last with the other three.
+    CHECK(n_independent_terms(points, Trend::quadratic) == 11);
+    const auto paraboloid = [](const VectorX& x) {
+        return 1.0 + x[0] - 2.0 * x[1] * x[1] + 3.0 * x[2] * x[2] + x[3] - x[0] * x[3];
+    };
+    VectorX values(points.rows());
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        values[i] = paraboloid(points.row(i).transpose());
+    }
+    const Kriging model(design, values, {.trend = Trend::quadratic});
+    for (const VectorX& x : {VectorX{{0.1, 0.5, 0.5, 0.3}}, VectorX{{0.2, 0.9, 0.7, 0.8}},
+                             VectorX{{-0.5, 1.5, 0.5, 0.0}}}) {
+        CHECK(model.value(x) == Approx(paraboloid(x)).epsilon(1e-6));
+        CHECK(std::isfinite(model.variance(x)));
+        CHECK(model.variance(x) < 1e-6);
+    }
+    CHECK(model.leave_one_out().cwiseAbs().maxCoeff() < 1e-6);
+    // An input that never varies has no slope.
+    MatrixX flat = latin_hypercube_design(2, 12, 1);
+    flat.col(1).setConstant(0.5);
+    const Kriging line({{flat}}, flat.col(0), {.trend = Trend::linear});
+    CHECK(line.value(VectorX{{0.3, 0.9}}) == Approx(0.3).epsilon(1e-6));
+}
+
 TEST_CASE("Kriging: a linear trend gives back a plane, far outside too", "[rom]") {
     const TensorDesign design = scattered(2, 12);
     const VectorX values =
