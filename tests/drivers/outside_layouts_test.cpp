@@ -56,6 +56,22 @@ TEST_CASE("mesh: outside layouts become valid volumes of better elements", "[dri
     CHECK(fs::exists(folder.path() / "o" / ("mesh_" + name + "_volume.png")));
 }
 
+TEST_CASE("mesh: an outside layout at degree 3 stays valid when its elements are halved",
+          "[drivers]") {
+    const auto data = test::data_folder();
+    if (!data) return;
+    const TemporaryFolder folder;
+    lay_out(*data, "rod", folder.path());
+    const auto ours =
+        run("mesh --json mesh_rod.toml --set meshing.degree=3 --out o", folder.path());
+    CHECK(ours.at("volume").at("certificate") == "valid");
+    REQUIRE(run_couture("convert o/mesh_rod_volume.xml halved.xml --refine 1", folder.path())
+                .exit_code == 0);
+    for (const auto& patch : run("info --json halved.xml", folder.path()).at("patches")) {
+        CHECK(patch.at("validity") == "valid");
+    }
+}
+
 TEST_CASE("mesh: an O-grid from outside lies exactly on a box", "[drivers]") {
     const TemporaryFolder folder;
     // Five cuboids: one in the middle, one along each of four sides.

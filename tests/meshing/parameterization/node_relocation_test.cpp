@@ -157,3 +157,21 @@ TEST_CASE("refine samples: points stay on the surface, coarse ones where they we
     CHECK(quality.smallest_scaled_jacobian > 0.7);
     CHECK_THROWS_AS(refine_samples(sphere.mesh, sphere.embedding, coarse, 0), InputError);
 }
+
+TEST_CASE("refine samples: points stay on their side of edges that bend into a cell",
+          "[parameterization]") {
+    // A cube with one side pushed in: its edges bend into the quads above and below, which have
+    // two cells per direction.
+    const LaidOutSurface cube = make_cube_layout(
+        16,
+        [](const Vector3& x) {
+            const double part = 0.225 * (1.0 + x.x()) * (1.0 - x.y() * x.y());
+            return Vector3(x.x() - part, x.y(), x.z());
+        },
+        [](const std::vector<Vector3>&) { return true; });
+    const LayoutSamples coarse = samples_of(cube, 2);
+    REQUIRE(!worst_turned_corner(coarse, cube.mesh));
+    const LayoutSamples fine = refine_samples(cube.mesh, cube.embedding, coarse, 4);
+    CHECK(!worst_turned_corner(fine, cube.mesh));
+    CHECK(quad_quality(to_quad_mesh(fine), cube.mesh).smallest_scaled_jacobian > 0.2);
+}
