@@ -32,8 +32,8 @@ constexpr int n_layers = 3;
 
 /// A bar of degrees (2, 2, 3) whose sections turn by 0.6 and whose axis bows.
 Volume make_twisted_box() {
-    const TensorSpace<3> space{{KnotVector::uniform(2, 1), KnotVector::uniform(2, 1),
-                                KnotVector::uniform(3, 1)}};
+    const TensorSpace<3> space{
+        {KnotVector::uniform(2, 1), KnotVector::uniform(2, 1), KnotVector::uniform(3, 1)}};
     MatrixX points(space.n_basis(), 3);
     for (int f = 0; f < space.n_basis(); ++f) {
         const auto i = space.indices(f);
@@ -136,12 +136,12 @@ IterativeRow measure_iterative_solver(const std::string& problem_name, const std
                                       int degree, int n_elements) {
     const MultiPatch<3> part = make_geometry(geometry);
     const KnotVector knots = KnotVector::uniform(degree, n_elements);
-    const Space<3> space(
-        part, std::vector<TensorSpace<3>>(part.patches.size(), {{knots, knots, knots}}));
+    const Space<3> space(part,
+                         std::vector<TensorSpace<3>>(part.patches.size(), {{knots, knots, knots}}));
     const Problem problem = make_problem(problem_name);
     const int nc = n_components<3>(problem);
-    IterativeRow row{problem_name, geometry, space.n_patches(), degree, n_elements,
-                     nc * space.n_dofs()};
+    IterativeRow row{problem_name, geometry,   space.n_patches(),
+                     degree,       n_elements, nc * space.n_dofs()};
 
     const Timer assembly;
     const BlockMatrix K = assemble(space, stiffness_form<3>(problem, space.n_patches()));
@@ -194,39 +194,38 @@ std::vector<IterativeRow> measure_iterative_solvers(bool quick) {
         std::vector<int> n_elements;
     };
     // As many elements as a machine of 24 GB holds comfortably.
-    const std::vector<Case> all = {
-        {"poisson", "annulus", 1, {8, 16, 32, 64}},
-        {"poisson", "annulus", 2, {8, 16, 32, 64}},
-        {"poisson", "annulus", 3, {8, 16, 32, 64}},
-        {"poisson", "annulus", 4, {8, 16, 32, 48}},
-        {"poisson", "twisted_box", 1, {8, 16, 32, 64}},
-        {"poisson", "twisted_box", 2, {8, 16, 32, 64}},
-        {"poisson", "twisted_box", 3, {8, 16, 32, 64}},
-        {"poisson", "twisted_box", 4, {8, 16, 32, 48}},
-        {"elasticity", "annulus", 1, {8, 16, 32, 64}},
-        {"elasticity", "annulus", 2, {8, 16, 32, 48}},
-        {"elasticity", "annulus", 3, {8, 16, 32}},
-        {"elasticity", "annulus", 4, {8, 16, 24}},
-        {"elasticity", "twisted_box", 1, {8, 16, 32, 64}},
-        {"elasticity", "twisted_box", 2, {8, 16, 32, 48}},
-        {"elasticity", "twisted_box", 3, {8, 16, 32}},
-        {"elasticity", "twisted_box", 4, {8, 16, 24}},
-        {"poisson", "boxes", 1, {4, 8, 16, 24}},
-        {"poisson", "boxes", 2, {4, 8, 16, 24}},
-        {"poisson", "boxes", 3, {4, 8, 16}},
-        {"poisson", "boxes", 4, {4, 8, 12}},
-        {"poisson", "cylinder", 1, {4, 8, 16, 24}},
-        {"poisson", "cylinder", 2, {4, 8, 16, 24}},
-        {"poisson", "cylinder", 3, {4, 8, 16}},
-        {"poisson", "cylinder", 4, {4, 8, 12}},
-        {"elasticity", "boxes", 1, {4, 8, 16}},
-        {"elasticity", "boxes", 2, {4, 8, 16}},
-        {"elasticity", "boxes", 3, {4, 8, 12}},
-        {"elasticity", "boxes", 4, {4, 8}},
-        {"elasticity", "cylinder", 1, {4, 8, 16}},
-        {"elasticity", "cylinder", 2, {4, 8, 16}},
-        {"elasticity", "cylinder", 3, {4, 8, 12}},
-        {"elasticity", "cylinder", 4, {4, 8}}};
+    const std::vector<Case> all = {{"poisson", "annulus", 1, {8, 16, 32, 64}},
+                                   {"poisson", "annulus", 2, {8, 16, 32, 64}},
+                                   {"poisson", "annulus", 3, {8, 16, 32, 64}},
+                                   {"poisson", "annulus", 4, {8, 16, 32, 48}},
+                                   {"poisson", "twisted_box", 1, {8, 16, 32, 64}},
+                                   {"poisson", "twisted_box", 2, {8, 16, 32, 64}},
+                                   {"poisson", "twisted_box", 3, {8, 16, 32, 64}},
+                                   {"poisson", "twisted_box", 4, {8, 16, 32, 48}},
+                                   {"elasticity", "annulus", 1, {8, 16, 32, 64}},
+                                   {"elasticity", "annulus", 2, {8, 16, 32, 48}},
+                                   {"elasticity", "annulus", 3, {8, 16, 32}},
+                                   {"elasticity", "annulus", 4, {8, 16, 24}},
+                                   {"elasticity", "twisted_box", 1, {8, 16, 32, 64}},
+                                   {"elasticity", "twisted_box", 2, {8, 16, 32, 48}},
+                                   {"elasticity", "twisted_box", 3, {8, 16, 32}},
+                                   {"elasticity", "twisted_box", 4, {8, 16, 24}},
+                                   {"poisson", "boxes", 1, {4, 8, 16, 24}},
+                                   {"poisson", "boxes", 2, {4, 8, 16, 24}},
+                                   {"poisson", "boxes", 3, {4, 8, 16}},
+                                   {"poisson", "boxes", 4, {4, 8, 12}},
+                                   {"poisson", "cylinder", 1, {4, 8, 16, 24}},
+                                   {"poisson", "cylinder", 2, {4, 8, 16, 24}},
+                                   {"poisson", "cylinder", 3, {4, 8, 16}},
+                                   {"poisson", "cylinder", 4, {4, 8, 12}},
+                                   {"elasticity", "boxes", 1, {4, 8, 16}},
+                                   {"elasticity", "boxes", 2, {4, 8, 16}},
+                                   {"elasticity", "boxes", 3, {4, 8, 12}},
+                                   {"elasticity", "boxes", 4, {4, 8}},
+                                   {"elasticity", "cylinder", 1, {4, 8, 16}},
+                                   {"elasticity", "cylinder", 2, {4, 8, 16}},
+                                   {"elasticity", "cylinder", 3, {4, 8, 12}},
+                                   {"elasticity", "cylinder", 4, {4, 8}}};
     std::vector<IterativeRow> rows;
     for (const Case& c : all) {
         for (const int n : c.n_elements) {
@@ -234,8 +233,8 @@ std::vector<IterativeRow> measure_iterative_solvers(bool quick) {
             if (quick && !is_small) {
                 continue;
             }
-            log::info(
-                fmt::format("fast diagonalization {} {} p{} n{}", c.problem, c.geometry, c.degree, n));
+            log::info(fmt::format("fast diagonalization {} {} p{} n{}", c.problem, c.geometry,
+                                  c.degree, n));
             rows.push_back(measure_iterative_solver(c.problem, c.geometry, c.degree, n));
         }
     }

@@ -85,12 +85,12 @@ FastDiagonalization::FastDiagonalization(const LinearSystem& system) {
         const PatchStructure structure = make_patch_structure(space);
         patches_ = std::make_unique<PatchPreconditioner>(A, is_fixed, structure);
         make_wire_basket(A, is_fixed, structure);
-        const int n_max = std::max(
-            1, static_cast<int>(std::pow(max_coarse_elements / space.n_patches(),
-                                         2.0 / structure.n_sides)));
-        coarse_ = std::make_unique<CoarseSpace>(
-            A, is_fixed, translations_of(system),
-            make_coarse_functions(space, elements_per_node, n_max));
+        const int n_max =
+            std::max(1, static_cast<int>(std::pow(max_coarse_elements / space.n_patches(),
+                                                  2.0 / structure.n_sides)));
+        coarse_ =
+            std::make_unique<CoarseSpace>(A, is_fixed, translations_of(system),
+                                          make_coarse_functions(space, elements_per_node, n_max));
     };
     if (const auto* volume = std::get_if<const Space<3>*>(&system.space)) {
         make(**volume);

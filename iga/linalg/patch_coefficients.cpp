@@ -82,8 +82,7 @@ std::vector<PatchCoefficients> patch_coefficients(const BlockMatrix& matrix,
                     const Univariate& u = *functions.directions[k];
                     const double product = 2.0 * u.linear[i[k]] * u.linear[j[k]];
                     const auto of_row = [&](int from, int to) {
-                        return 0.5 *
-                               (u.square[to] - product + u.linear[from] * u.linear[from]);
+                        return 0.5 * (u.square[to] - product + u.linear[from] * u.linear[from]);
                     };
                     moment[k] = is_chosen[f] * of_row(i[k], j[k]) +
                                 (f == g ? 0.0 : is_chosen[g] * of_row(j[k], i[k]));

@@ -108,8 +108,7 @@ void PatchPreconditioner::make_interiors(const BlockMatrix& matrix,
                 // A side of which nothing is free is left out of the box.
                 std::array<bool, 2> is_closed{};
                 for (int end = 0; end < 2 && 2 * k < structure_.n_sides; ++end) {
-                    const std::vector<int> side =
-                        structure_.functions_on_side(patch, 2 * k + end);
+                    const std::vector<int> side = structure_.functions_on_side(patch, 2 * k + end);
                     is_closed[end] = std::none_of(side.begin(), side.end(), is_free);
                 }
                 bases[k] = eigenbasis(functions.directions[k], is_closed[0], is_closed[1]);
@@ -147,8 +146,7 @@ void PatchPreconditioner::make_faces(const std::vector<char>& is_fixed, int nc) 
                 }
             }
             const PatchFunctions& first = structure_.patches[meeting.patch[0]];
-            const std::array<int, 2> tangential =
-                other_directions(side_direction(meeting.side[0]));
+            const std::array<int, 2> tangential = other_directions(side_direction(meeting.side[0]));
             const std::array<int, 2> sizes{first.size(tangential[0]), first.size(tangential[1])};
             for (int k = 0; k < 2; ++k) {
                 std::array<bool, 2> is_closed{};
@@ -171,8 +169,7 @@ void PatchPreconditioner::make_faces(const std::vector<char>& is_fixed, int nc) 
                 const std::array<int, 2> own = other_directions(side_direction(face.sides[s]));
                 std::array<double, 2> stretch{};
                 for (int k = 0; k < 2; ++k) {
-                    stretch[k] =
-                        interior.coefficients.stretch[own[s == 0 ? k : meeting.axis[k]]];
+                    stretch[k] = interior.coefficients.stretch[own[s == 0 ? k : meeting.axis[k]]];
                 }
                 VectorX of_modes(n0 * n1);
                 for (Eigen::Index j = 0; j < n1; ++j) {
@@ -212,8 +209,8 @@ VectorX PatchPreconditioner::schur_values(const Interior& interior, int side,
         double value = stretch * functions.stiffness(end, end) + shift * functions.mass(end, end);
         if (n > 0) {
             const double floor = 1e-300;
-            value -= ((stretch * k + shift * m).array().square() / (values + shift).max(floor))
-                         .sum();
+            value -=
+                ((stretch * k + shift * m).array().square() / (values + shift).max(floor)).sum();
         }
         result[i] = std::max(value, 0.0);
     }
@@ -281,8 +278,8 @@ VectorX PatchPreconditioner::couple_to_side(const Interior& interior, int side,
     const auto M1 = inner_columns(u1.mass, box, t1);
     const auto K0 = inner_columns(u0.stiffness, box, t0);
     const auto K1 = inner_columns(u1.stiffness, box, t1);
-    const MatrixX left = M0 * (a[normal] * by_stiffness + reaction * by_mass) +
-                         a[t0] * (K0 * by_mass);
+    const MatrixX left =
+        M0 * (a[normal] * by_stiffness + reaction * by_mass) + a[t0] * (K0 * by_mass);
     const MatrixX right = a[t1] * (M0 * by_mass);
     const MatrixX result = left * M1.transpose() + right * K1.transpose();
     return result.reshaped();
@@ -308,8 +305,8 @@ void PatchPreconditioner::subtract_from_interior(const Interior& interior, int s
     const MatrixX zM1 = z * M1;
     const MatrixX mass = M0.transpose() * zM1;
     const MatrixX by_stiffness = a[normal] * mass;
-    const MatrixX by_mass = reaction * mass + a[t0] * (K0.transpose() * zM1) +
-                            a[t1] * (M0.transpose() * (z * K1));
+    const MatrixX by_mass =
+        reaction * mass + a[t0] * (K0.transpose() * zM1) + a[t1] * (M0.transpose() * (z * K1));
     for (int i = 0; i < slabs.n; ++i) {
         const double m = own.mass(end, i + box.first(normal));
         if (m != 0.0) {

@@ -111,8 +111,8 @@ std::unique_ptr<LinearSolver> make_linear_solver(const SolverOptions& options) {
 }
 
 const std::vector<std::string>& linear_solver_names() {
-    static const std::vector<std::string> names{"auto", "cholmod", "fast_diagonalization",
-                                                "petsc", "umfpack"};
+    static const std::vector<std::string> names{"auto", "cholmod", "fast_diagonalization", "petsc",
+                                                "umfpack"};
     return names;
 }
 
