@@ -12,7 +12,7 @@ namespace couture::iga {
 /// product of the stiffness matrix in direction k with mass matrices in the others, by the
 /// eigenvectors of each direction: cost 4 (n_0 + n_1 + n_2) per unknown.
 ///
-/// Source: [SangalliTani16] Sec. 4.1.
+/// Source: [SangalliTani16], the direct method of fast diagonalization.
 class BoxSolver {
   public:
     /// A zero eigenvalue (no end is held, no reaction) is replaced by the lowest one that is not.

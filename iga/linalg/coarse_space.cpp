@@ -271,6 +271,7 @@ void CoarseSpace::make_matrix(const BlockMatrix& A) {
     // P^T A P is what was added up plus its transpose.
     std::vector<std::vector<std::pair<int, Block>>> upper(functions_.n_nodes);
     for (int node = 0; node < functions_.n_nodes; ++node) {
+        upper[node].emplace_back(node, Block::Zero(nc, nc));
         for (std::size_t k = 0; k < coarse[node].columns.size(); ++k) {
             const int column = coarse[node].columns[k];
             const Block value = Eigen::Map<const Block>(&coarse[node].values[k * n_values], nc, nc);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
+#include <numbers>
 #include <random>
 
 #include "iga/assembly/assembler.h"
@@ -18,6 +19,7 @@ using namespace couture;
 using namespace couture::iga;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
+using std::numbers::pi;
 
 namespace {
 
@@ -219,7 +221,7 @@ TEST_CASE("Univariate: coefficients reproduce xi and xi^2, eigenvectors are orth
     CHECK((V.transpose() * u.stiffness.bottomRightCorner(n, n) * V)
               .isApprox(MatrixX(basis.values.asDiagonal()), rounding));
     // Functions that vanish at 0 only: pi^2 / 4 from above.
-    CHECK(basis.values[0] >= 0.25 * M_PI * M_PI - rounding);
+    CHECK(basis.values[0] >= 0.25 * pi * pi - rounding);
 }
 
 TEST_CASE("patch_coefficients: the stretches of a box, times the material", "[linalg]") {
@@ -267,27 +269,27 @@ TEST_CASE("FastDiagonalization: symmetric positive definite", "[linalg]") {
 TEST_CASE("fast_diagonalization: iterations hardly depend on elements and degree", "[linalg]") {
     const std::vector<Support> held{hold("z_low", {0, 1, 2})};
     const std::vector<Support> held_scalar{hold("z_low", {0})};
-    // Measured: 19 to 23, 49 to 65; of 8 patches 23 to 26.
+    // Measured: 15 to 21; elasticity 45 and 57; 8 patches 19 and 25.
     for (const auto& [degree, n] : {std::pair{1, 4}, {1, 12}, {2, 8}, {4, 4}}) {
         CHECK(n_iterations(make_model<3>(Physics::poisson, annulus(), degree, n, held_scalar)) <=
-              26);
+              24);
     }
-    CHECK(n_iterations(make_model<3>(Physics::elasticity, annulus(), 1, 6, held)) <= 75);
-    CHECK(n_iterations(make_model<3>(Physics::elasticity, annulus(), 3, 4, held)) <= 75);
-    CHECK(n_iterations(make_model<3>(Physics::poisson, odd_boxes(), 1, 6, held_scalar)) <= 32);
-    CHECK(n_iterations(make_model<3>(Physics::poisson, odd_boxes(), 3, 3, held_scalar)) <= 32);
+    CHECK(n_iterations(make_model<3>(Physics::elasticity, annulus(), 1, 6, held)) <= 65);
+    CHECK(n_iterations(make_model<3>(Physics::elasticity, annulus(), 3, 4, held)) <= 65);
+    CHECK(n_iterations(make_model<3>(Physics::poisson, odd_boxes(), 1, 6, held_scalar)) <= 28);
+    CHECK(n_iterations(make_model<3>(Physics::poisson, odd_boxes(), 3, 3, held_scalar)) <= 28);
 }
 
 TEST_CASE("fast_diagonalization: several patches in odd orientations, as Cholesky", "[linalg]") {
     const std::vector<Support> held{hold("z_low", {0, 1, 2})};
-    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, odd_boxes(), 2, 2, held)) < 80);
-    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, bent_boxes(), 2, 3, held)) < 80);
+    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, odd_boxes(), 2, 2, held)) < 60);
+    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, bent_boxes(), 2, 3, held)) < 60);
     CHECK(compare_with_cholmod(
               make_model<2>(Physics::elasticity,
                             with_sets<2>({make_unit_box<2>(1, 1),
                                           reoriented<2>(make_unit_box<2>(1, 1, Vector2(1.0, 0.0)),
                                                         {1, 0}, {true, false})}),
-                            2, 6, {hold("x_low", {0, 1})})) < 80);
+                            2, 6, {hold("x_low", {0, 1})})) < 60);
 }
 
 TEST_CASE("fast_diagonalization: supports that hold components on different sides, or no side",
@@ -296,22 +298,22 @@ TEST_CASE("fast_diagonalization: supports that hold components on different side
     const std::vector<Support> sliding{hold("x_low", {0}), hold("y_low", {1}), hold("z_low", {2})};
     CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity,
                                              with_sets<3>({make_box<3>(Vector3(1.0, 2.0, 1.0))}), 2,
-                                             4, sliding)) < 80);
+                                             4, sliding)) < 60);
     CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, odd_boxes(), 1, 3, sliding)) <
-          80);
+          60);
     // No side holds components 0 and 1: a corner and an edge do.
     MultiPatch<3> part = with_sets<3>({make_box<3>(Vector3(1.0, 2.0, 1.0))});
     part.boundary_sets["corner"] = {{0, {End::low, End::low, End::low}}};
     part.boundary_sets["edge"] = {{0, {End::low, End::free, End::low}}};
     const std::vector<Support> loose{hold("z_low", {2}), hold("corner", {0, 1}), hold("edge", {0})};
-    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, part, 2, 4, loose)) < 150);
+    CHECK(compare_with_cholmod(make_model<3>(Physics::elasticity, part, 2, 4, loose)) < 60);
 }
 
 TEST_CASE("fast_diagonalization: a patch that meets itself, and one that collapses", "[linalg]") {
     MultiPatch<3> ring;
     MatrixX section(4, 2);
     section << 1.0, 0.0, 2.0, 0.0, 1.0, 1.0, 2.0, 1.0;
-    ring.patches = {make_revolution(make_multilinear<2>(section), 2.0 * M_PI)};
+    ring.patches = {make_revolution(make_multilinear<2>(section), 2.0 * pi)};
     ring = refine<3>(ring, 2, std::array<int, 3>{3, 3, 8});
     find_interfaces(ring);
     REQUIRE(ring.interfaces.size() == 1);
@@ -328,13 +330,13 @@ TEST_CASE("fast_diagonalization: a patch that meets itself, and one that collaps
         model.is_fixed = make_constraints(*model.space, problem, {""}).is_fixed;
     };
     fill(ring);
-    CHECK(compare_with_cholmod(model) < 120);
+    CHECK(compare_with_cholmod(model) < 90);
     MultiPatch<3> shell;
     shell.patches = {make_sphere_shell_patch(1.0, 2.0)};
     shell = refine<3>(shell, 2, std::array<int, 3>{3, 4, 4});
     shell.boundary_sets["end"] = {make_side<3>(0, 4)};
     fill(shell);
-    CHECK(compare_with_cholmod(model) < 250);
+    CHECK(compare_with_cholmod(model) < 95);
 }
 
 TEST_CASE("fast_diagonalization: what it can't solve is named", "[linalg]") {
@@ -368,14 +370,25 @@ TEST_CASE("fast_diagonalization: what it can't solve is named", "[linalg]") {
     CHECK_THROWS_WITH(run(), Contains("not positive definite"));
 }
 
-TEST_CASE("auto: takes fast diagonalization when the factor is too large, then petsc", "[linalg]") {
+TEST_CASE("auto: fast diagonalization when the factor is too large, petsc when that stalls",
+          "[linalg]") {
     const auto model = make_model<3>(Physics::poisson, annulus(), 2, 6, {hold("z_low", {0})});
     SolverOptions options;
     options.memory_limit = 10000;
+    MatrixX x;
     const auto solver = make_linear_solver(options);
     solver->factorize(model.system());
-    MatrixX x;
-    const SolveReport report = solver->solve(model.load(1), x);
+    SolveReport report = solver->solve(model.load(1), x);
     CHECK(report.solver == "fast_diagonalization");
     CHECK_THAT(report.note, StartsWith("fell back to fast_diagonalization: cholmod: the factor "));
+
+    options.max_iterations = 2;
+    options.petsc_options = "-ksp_type preonly -pc_type cholesky";
+    const auto hasty = make_linear_solver(options);
+    hasty->factorize(model.system());
+    report = hasty->solve(model.load(1), x);
+    CHECK(report.solver == "petsc");
+    CHECK(report.residual <= tolerance);
+    CHECK_THAT(report.note,
+               Contains("fell back to petsc: fast_diagonalization: stopped after 2 iterations"));
 }
