@@ -209,6 +209,7 @@ BenchResult run_benchmarks(const BenchOptions& options) {
             }
         }
     }
+    result.iterative = measure_iterative_solvers(options.quick);
     // About 2.5, 5, 10, 20, 50 and 100 thousand triangles.
     const std::vector<double> edge_lengths =
         options.quick ? std::vector<double>{8.7, 6.0}
@@ -253,13 +254,15 @@ std::string bench_text(const BenchResult& result) {
     }
     text +=
         "\nSolution: elasticity, one side held, to 1e-8\n"
-        "  solver    p   n  unknowns   set-up s   solve s  iterations  residual  memory MB\n";
+        "  solver                p   n  unknowns   set-up s   solve s  iterations  residual  "
+        "memory MB\n";
     for (const SolveRow& row : result.solves) {
-        text += fmt::format("  {:8}  {}  {:2}  {:8}  {:9.3f}  {:8.3f}  {:10}  {:8.1e}  {:>9}\n",
+        text += fmt::format("  {:20}  {}  {:2}  {:8}  {:9.3f}  {:8.3f}  {:10}  {:8.1e}  {:>9}\n",
                             row.solver, row.degree, row.n_elements, row.n_unknowns,
                             row.setup_seconds, row.solve_seconds, row.iterations, row.residual,
                             row.memory > 0.0 ? fmt::format("{:.0f}", 1e-6 * row.memory) : "-");
     }
+    text += iterative_text(result.iterative);
     text +=
         "\nLoops and pants: one thread, processor time; pants with their loops; us over n log2 n\n"
         "  part        genus  triangles   loops s   pants s  loops us/nlogn  pants us/nlogn\n";
@@ -316,6 +319,22 @@ std::string bench_json(const BenchResult& result) {
                                     {"iterations", row.iterations},
                                     {"residual", row.residual},
                                     {"memory_bytes", row.memory}});
+    }
+    json["fast_diagonalization"] = nlohmann::ordered_json::array();
+    for (const IterativeRow& row : result.iterative) {
+        json["fast_diagonalization"].push_back({{"problem", row.problem},
+                                                {"geometry", row.geometry},
+                                                {"patches", row.n_patches},
+                                                {"degree", row.degree},
+                                                {"elements_per_direction", row.n_elements},
+                                                {"unknowns", row.n_unknowns},
+                                                {"assembly_seconds", row.assembly_seconds},
+                                                {"setup_seconds", row.setup_seconds},
+                                                {"solve_seconds", row.solve_seconds},
+                                                {"iterations", row.iterations},
+                                                {"residual", row.residual},
+                                                {"jacobi_seconds", row.jacobi_seconds},
+                                                {"jacobi_iterations", row.jacobi_iterations}});
     }
     json["cutting"] = nlohmann::ordered_json::array();
     for (const CuttingRow& row : result.cuts) {

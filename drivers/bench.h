@@ -6,6 +6,7 @@
 
 #include "drivers/mesh_bench.h"
 #include "drivers/reduced_model_bench.h"
+#include "drivers/solver_bench.h"
 #include "iga/linalg/machine_limits.h"
 
 namespace couture::drivers {
@@ -60,6 +61,7 @@ struct BenchResult {
     std::vector<iga::MachineLimits> limits;
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
+    std::vector<IterativeRow> iterative;
     std::vector<CuttingRow> cuts;
     std::vector<MeshingRow> meshing;
     std::vector<EvaluationRow> evaluations;

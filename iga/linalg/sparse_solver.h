@@ -2,11 +2,15 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "iga/linalg/block_matrix.h"
 
 namespace couture::iga {
+
+template <int d>
+class Space;
 
 /// A x = b with some unknowns held: rows and columns of fixed unknowns are left out, the solution
 /// there is zero (prescribed values are moved to b beforehand).
@@ -16,10 +20,13 @@ struct LinearSystem {
     std::vector<char> is_fixed;
     /// n_unknowns x k: motions without energy (rigid-body modes), for multigrid; may be empty.
     MatrixX near_null_space;
+    /// Space whose functions are the block rows, for fast_diagonalization; may be nothing. Read by
+    /// `factorize` only.
+    std::variant<std::monostate, const Space<2>*, const Space<3>*> space = {};
 };
 
 struct SolverOptions {
-    /// "auto", "cholmod", "petsc" or "umfpack".
+    /// "auto", "cholmod", "fast_diagonalization", "petsc" or "umfpack".
     std::string name = "auto";
     /// Largest accepted |b - A x| / |b|. A direct solver may also stop at the rounding of A x where
     /// that is larger, up to 1e-6, and says so in the report's note.

@@ -213,7 +213,7 @@ MatrixX Equilibrium<d>::solve(const LoadState<d>& loads, const MatrixX& b) {
     if (skew_.nonZeros() == 0 && !coupling_) {
         try {
             // Ordered once: the pattern stays.
-            solver_->factorize({matrix_, is_fixed, {}});
+            solver_->factorize({matrix_, is_fixed, {}, reference_->space.get()});
             static_cast<void>(solver_->solve(b, x));
             return x;
         } catch (const NotPositiveDefinite& error) {

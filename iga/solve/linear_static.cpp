@@ -80,7 +80,8 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
         options.reused_solver == nullptr ? make_linear_solver(options.solver) : nullptr;
     LinearSolver* solver = own_solver ? own_solver.get() : options.reused_solver;
     std::vector<std::string> mode_names;
-    LinearSystem system{K, constraints.is_fixed, rigid_body_modes(*space, problem, mode_names)};
+    LinearSystem system{K, constraints.is_fixed, rigid_body_modes(*space, problem, mode_names),
+                        space.get()};
     constraints.to_frames(system.near_null_space);
     timed(result.phases, "factorization", [&] {
         solver->factorize(system);

@@ -28,7 +28,8 @@ SolverOptions options_of(const std::string& name) {
     return options;
 }
 
-std::string any_solver() { return GENERATE(from_range(linear_solver_names())); }
+/// All but fast_diagonalization, which these matrices have no space for.
+std::string any_solver() { return GENERATE("auto", "cholmod", "petsc", "umfpack"); }
 
 /// Largest |b - A x| / |b| of the free unknowns, from the dense matrix.
 double true_residual(const BlockMatrix& A, const std::vector<char>& is_fixed, const MatrixX& b,
@@ -236,8 +237,8 @@ TEST_CASE("LinearSolver: wrong input is named", "[linalg]") {
 
 TEST_CASE("make_linear_solver: an unknown name lists those there are", "[linalg]") {
     CHECK_THROWS_WITH(make_linear_solver(options_of("mumps")),
-                      "linear solver: unknown name 'mumps'; there are auto, cholmod, petsc, "
-                      "umfpack");
+                      "linear solver: unknown name 'mumps'; there are auto, cholmod, "
+                      "fast_diagonalization, petsc, umfpack");
     CHECK(linear_solver_names().front() == "auto");
 }
 
