@@ -2,11 +2,10 @@
 
 #include "iga/core/error.h"
 #include "iga/topology/jacobian_certificate.h"
-#include "io/mesh_deck.h"
 
 namespace couture::drivers {
 
-MeshStages mesh_geometry(const io::Deck& deck, const std::filesystem::path& like) {
+io::MeshDeck member_mesh_deck(const io::Deck& deck, const std::filesystem::path& like) {
     const std::string name = deck.geometry.mesh.filename().string();
     io::MeshDeck mesh = io::read_mesh_deck(deck.geometry.mesh);
     mesh.family.reset();
@@ -31,7 +30,12 @@ MeshStages mesh_geometry(const io::Deck& deck, const std::filesystem::path& like
         throw InputError("{}: the deck's units are \"{}\", those of {} are \"{}\"; write the same",
                          deck.geometry.source, deck.units.name(), name, mesh.units.name());
     }
-    MeshStages stages = run_mesh_stages(mesh, {});
+    return mesh;
+}
+
+MeshStages mesh_geometry(const io::Deck& deck, const std::filesystem::path& like) {
+    const std::string name = deck.geometry.mesh.filename().string();
+    MeshStages stages = run_mesh_stages(member_mesh_deck(deck, like), {});
     const auto& report = stages.solid->volume->report.parameterization;
     if (report.validity != iga::Validity::valid) {
         throw GeometryError("{}: the volume is {} in patch {}; try smaller elements or other cuts",

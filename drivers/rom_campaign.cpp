@@ -112,6 +112,7 @@ std::optional<TrainedFile> train_model(const RomTrainOptions& options, const Com
     samples.take_added(store);
     const auto reference = samples.make_reference(store);
     samples.check_factored(reference);
+    samples.check_periodic(reference);
     if (!run_campaign(options, common, samples, *reference, store, {"rom", "train"})) return {};
     TrainedFile trained{rom::ReducedModel(read_snapshots(samples, *reference, store),
                                           model_options(samples.section())),

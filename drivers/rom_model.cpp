@@ -118,7 +118,8 @@ VectorX TrainedModel::point_of(const std::vector<std::string>& settings,
     return point;
 }
 
-void TrainedModel::check_inside(const VectorX& point, bool is_forced) const {
+void TrainedModel::check_inside(const VectorX& point, bool is_forced,
+                                const std::string& way_out) const {
     const rom::ParameterSpace& space = model().parameters();
     constexpr double most_outside = 0.2;
     constexpr double rounding = 1e-12;
@@ -133,7 +134,7 @@ void TrainedModel::check_inside(const VectorX& point, bool is_forced) const {
             "of that range",
             one.name, point[i], one.lower, one.upper, 100.0 * part);
         if (part > most_outside && !is_forced) {
-            throw InputError("{}; beyond 20 % it answers with --force only", text);
+            throw InputError("{}; beyond 20 % {}", text, way_out);
         }
         log::warn(text);
     }

@@ -45,7 +45,9 @@ class TrainedModel {
 
     /// Warns of a point outside the training box.
     /// @throws InputError  for one that is by more than a fifth of a range outside, unless forced
-    void check_inside(const VectorX& point, bool is_forced) const;
+    void check_inside(
+        const VectorX& point, bool is_forced,
+        const std::string& way_out = "nothing it says is of use: take a value nearer to it") const;
 
   private:
     std::filesystem::path path_;

@@ -152,6 +152,12 @@ RomPlan make_rom_plan(const io::RomSection& section) {
     } else {
         plan.geometry_points = geometry_design(section, static_cast<int>(plan.geometry.size()));
     }
+    if (!plan.geometry.empty() && plan.n_geometries() < 2) {
+        throw InputError(
+            "{}: the design has {} geometry; a model with {} parameters of the geometry needs 2 at "
+            "least, and some for each of them to be of use",
+            section.source, plan.n_geometries(), plan.geometry.size());
+    }
     plan.load_points = level_design(section, plan.load);
     plan.material_points = level_design(section, plan.material);
     return plan;

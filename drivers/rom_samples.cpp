@@ -8,9 +8,11 @@
 #include "drivers/deck_check.h"
 #include "drivers/job_geometry.h"
 #include "drivers/meshed_geometry.h"
+#include "drivers/prepared_surface.h"
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
+#include "iga/core/log.h"
 #include "iga/core/text_hash.h"
 #include "iga/solve/linear_static.h"
 #include "iga/solve/load_stepping.h"
@@ -18,6 +20,7 @@
 #include "iga/topology/jacobian_certificate.h"
 #include "io/atomic_file.h"
 #include "io/pants_file.h"
+#include "rom/member_geometry.h"
 
 namespace couture::drivers {
 
@@ -92,6 +95,11 @@ const io::RomSection& checked_section(const io::Deck& deck) {
     return *deck.rom;
 }
 
+std::string describe_value(const rom::Parameter& parameter, double value) {
+    return fmt::format("{} = {:.6g}{}{}", parameter.name, value, parameter.unit.empty() ? "" : " ",
+                       parameter.unit);
+}
+
 }  // namespace
 
 bool moves(const io::Deck& deck) {
@@ -114,9 +122,7 @@ bool moves(const io::Deck& deck) {
 std::string describe_point(const rom::ParameterSpace& space, const VectorX& point) {
     std::vector<std::string> values;
     for (int i = 0; i < space.size(); ++i) {
-        const rom::Parameter& parameter = space.parameters()[i];
-        values.push_back(fmt::format("{} = {:.6g}{}{}", parameter.name, point[i],
-                                     parameter.unit.empty() ? "" : " ", parameter.unit));
+        values.push_back(describe_value(space.parameters()[i], point[i]));
     }
     return fmt::format("{}", fmt::join(values, ", "));
 }
@@ -339,6 +345,55 @@ void RomSamples::check_factored(const iga::SpacePtr<3>& reference) const {
                     refuse(fmt::format("the stiffness of material '{}' is not proportional to it",
                                        problem.materials[m].name));
                 }
+            }
+        }
+    }
+}
+
+void RomSamples::check_periodic(const iga::SpacePtr<3>& reference) const {
+    if (!deck_.geometry.mesh.empty() || !plan_.listed.empty()) return;
+    for (int i = 0; i < plan_.space.size(); ++i) {
+        const rom::Parameter& one = plan_.space.parameters()[i];
+        if (!one.is_periodic) continue;
+        const auto field_at = [&](double value) {
+            VectorX point = plan_.space.centre();
+            point[i] = value;
+            const io::Deck deck = deck_at(point);
+            return rom::to_field(
+                *reference, make_space<3>(deck, as_volume(load_geometry(deck), deck))->geometry());
+        };
+        const double difference = (field_at(one.lower) - field_at(one.upper)).cwiseAbs().maxCoeff();
+        constexpr double rounding = 1e-6;
+        if (difference > rounding * reference->geometry().size()) {
+            throw InputError(
+                "{}: '{}' is periodic, but control points at {} and {} differ by up to {:.3g}; "
+                "give one whole period as range, or leave 'periodic' out",
+                deck_.rom->parameters[i].source, one.name, one.lower, one.upper, difference);
+        }
+    }
+}
+
+void RomSamples::check_ends() const {
+    const auto make = [&](const VectorX& point) {
+        const io::Deck deck = deck_of_member(point);
+        if (deck.geometry.mesh.empty()) {
+            require_valid(as_volume(load_geometry(deck), deck));
+        } else {
+            static_cast<void>(prepare_surface(member_mesh_deck(deck), {}));
+        }
+    };
+    if (!plan_.listed.empty()) return;
+    make(plan_.reference);
+    for (const int i : plan_.geometry) {
+        const rom::Parameter& one = plan_.space.parameters()[i];
+        for (const double end : {one.lower, one.upper}) {
+            VectorX point = plan_.reference;
+            point[i] = end;
+            try {
+                make(point);
+            } catch (const Error& error) {
+                log::warn(fmt::format("rom: there is no member at {}, all others in the middle: {}",
+                                      describe_value(one, end), error.what()));
             }
         }
     }

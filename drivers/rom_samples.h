@@ -72,6 +72,18 @@ class RomSamples {
     /// @throws InputError  naming the parameter and the condition that does not hold
     void check_factored(const iga::SpacePtr<3>& reference) const;
 
+    /// Checks that a part has the same geometry at both ends of a periodic parameter. Meshed and
+    /// listed members are not compared.
+    ///
+    /// @throws InputError  naming the parameter and the largest difference
+    void check_periodic(const iga::SpacePtr<3>& reference) const;
+
+    /// The member in the middle of all ranges, and with one geometric parameter at an end, up to
+    /// its surface where it is meshed: for those that can't be made a warning says why.
+    ///
+    /// @throws InputError  if the one in the middle can't be made
+    void check_ends() const;
+
   private:
     [[nodiscard]] io::Deck parsed_deck(const VectorX& point, std::vector<std::string> more) const;
     // With the member's own geometry, of a listed one its file.

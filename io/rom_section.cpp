@@ -132,7 +132,7 @@ RomParameter read_parameter(Section& section, const TomlNode& document, bool is_
         section.mistake("levels",
                         "'levels' are of loads and materials; geometry has 'design' of [rom]");
     }
-    result.n_levels = section.integer("levels", 1, most_levels).value_or(result.n_levels);
+    result.n_levels = section.integer("levels", 2, most_levels).value_or(result.n_levels);
     result.is_factored = section.flag("factored").value_or(false);
     if (result.is_factored && result.parameter.group == rom::ParameterGroup::geometry) {
         section.mistake("factored", "no displacement is proportional to a geometric parameter");
@@ -269,6 +269,15 @@ std::optional<RomSection> read_rom_section(Section& top, const std::filesystem::
                                     fmt::format("two parameters are called '{}'; give one another "
                                                 "'name'",
                                                 result->parameters[i].parameter.name));
+                }
+                for (const std::string& key : result->parameters[i].keys) {
+                    const auto& others = result->parameters[k].keys;
+                    if (std::find(others.begin(), others.end(), key) == others.end()) continue;
+                    section.mistake("parameter",
+                                    fmt::format("'{}' and '{}' have the same key '{}'; leave one "
+                                                "of them out",
+                                                result->parameters[k].parameter.name,
+                                                result->parameters[i].parameter.name, key));
                 }
             }
         }

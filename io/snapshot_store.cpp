@@ -58,8 +58,8 @@ SnapshotStore::SnapshotStore(fs::path folder, std::string job)
     if (found == job_) return;
     if (!found.empty() && has_snapshots(folder_)) {
         throw InputError(
-            "{}: the snapshots there are of another job: {}; take another folder (--out), or "
-            "remove {} if they are of no use any more",
+            "{}: the snapshots there are of another job: {}; take the deck and settings that made "
+            "them, or another folder (--out); or remove {} if they are of no use any more",
             plan.string(), difference(job_, found), folder_.string());
     }
     // A plan of which no snapshot was made stands in nobody's way.
@@ -102,13 +102,28 @@ bool SnapshotStore::has_solution(int i_geometry, int i_material) const {
     return fs::exists(file(solution_name(i_geometry, i_material) + ".h5"));
 }
 
+namespace {
+
+// A file that can't be read is named with the way out.
+template <typename Read>
+MatrixX with_way_out(const Read& read) {
+    try {
+        return read();
+    } catch (const FileError& error) {
+        throw FileError("{}. Remove the file, it will be made again", error.what());
+    }
+}
+
+}  // namespace
+
 MatrixX SnapshotStore::geometry(int i_geometry, const std::string& signature) const {
-    return read_matrix(geometry_name(i_geometry), signature);
+    return with_way_out([&] { return read_matrix(geometry_name(i_geometry), signature); });
 }
 
 MatrixX SnapshotStore::solution(int i_geometry, int i_material,
                                 const std::string& signature) const {
-    return read_matrix(solution_name(i_geometry, i_material), signature);
+    return with_way_out(
+        [&] { return read_matrix(solution_name(i_geometry, i_material), signature); });
 }
 
 void SnapshotStore::write_geometry(int i_geometry, const MatrixX& control_points,

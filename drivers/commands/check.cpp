@@ -51,6 +51,8 @@ std::optional<RomPlan> check_rom(const SolveOptions& options, const io::Deck& de
     const RomSamples samples(options.deck, options.overrides);
     if constexpr (d == 3) {
         samples.check_factored(space);
+        samples.check_periodic(space);
+        samples.check_ends();
     } else {
         throw InputError("{}: {}", deck.path.filename().string(), rom_needs_volume);
     }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "drivers/commands/commands.h"
 #include "drivers/rom_campaign.h"
 #include "drivers/rom_model.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/timer.h"
 #include "rom/designs.h"
 
 namespace couture::drivers {
@@ -58,6 +60,7 @@ rom::Calibration validated(const RomTrainOptions& campaign) {
 }  // namespace
 
 int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common) {
+    const Timer timer;
     const RomTrainOptions& campaign = options.campaign;
     RomSamples samples(campaign.deck, campaign.overrides);
     if (samples.plan().geometry.empty()) {
@@ -92,7 +95,19 @@ int run_rom_enrich(const RomEnrichOptions& options, const CommonOptions& common)
                         "{:.3g} %",
                         samples.plan().n_geometries(), 100.0 * worst, 100.0 * options.tolerance));
         if (worst <= options.tolerance || n_added >= options.max_points) {
-            if (!common.quiet) {
+            if (common.json) {
+                const nlohmann::ordered_json object = {
+                    {"program", "couture " COUTURE_VERSION},
+                    {"status", worst <= options.tolerance ? "done" : "failed"},
+                    {"added", n_added},
+                    {"geometries", samples.plan().n_geometries()},
+                    {"expected_error", worst},
+                    {"tolerance", options.tolerance},
+                    {"seconds", timer.seconds()},
+                    {"warnings", log::warnings()},
+                    {"files", {trained->file.string()}}};
+                fmt::print("{}\n", object.dump(2));
+            } else if (!common.quiet) {
                 fmt::print(
                     "{} geometries were added, there are {}; expected error up to {:.3g} %; "
                     "wrote {}\n",

@@ -111,7 +111,7 @@ int run_rom_eval(const RomEvalOptions& options, const CommonOptions& common) {
     const TrainedModel trained(options.model);
     const rom::ReducedModel& model = trained.model();
     const VectorX point = trained.point_of(options.settings);
-    trained.check_inside(point, options.is_forced);
+    trained.check_inside(point, options.is_forced, "it answers with --force only");
     if (options.galerkin && trained.is_geometry_only()) {
         throw InputError("rom eval: --galerkin solves for displacements; {} has geometry only",
                          trained.path().string());

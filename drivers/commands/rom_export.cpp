@@ -27,18 +27,37 @@ void warn_large_page(std::size_t n_bytes, const rom::ReducedModel& model) {
         parts.models[parts.displacement.i_model].n_modes(), model.n_nodes()));
 }
 
+// Nobody's page, model or deck is overwritten by a slip.
+void require_name(const std::filesystem::path& file, bool is_page) {
+    const std::string extension = file.extension().string();
+    const bool is_html = extension == ".html" || extension == ".htm";
+    if (is_page && !is_html) {
+        throw InputError("rom export --html {}: a page's name ends in .html", file.string());
+    }
+    if (!is_page && (is_html || extension == ".rom" || extension == ".toml")) {
+        throw InputError(
+            "rom export --binary {}: that is the name of a {}; take another, such as {}",
+            file.string(),
+            is_html               ? "page"
+            : extension == ".rom" ? "reduced model"
+                                  : "deck",
+            std::filesystem::path(file).replace_extension(".bin").string());
+    }
+}
+
 }  // namespace
 
 int run_rom_export(const RomExportOptions& options, const CommonOptions& common) {
     const TrainedModel trained(options.model);
     const bool is_page = options.binary.empty();
+    std::filesystem::path file = is_page ? options.html : options.binary;
+    if (file.empty()) file = options.model.stem().string() + ".html";
+    require_name(file, is_page);
     const io::ExportContent content = is_page ? page_content(trained) : volume_content(trained);
     if (!content.no_stress.empty()) {
         log::warn(fmt::format("the {} displacements only: {}",
                               is_page ? "page shows" : "evaluator gives", content.no_stress));
     }
-    std::filesystem::path file = is_page ? options.html : options.binary;
-    if (file.empty()) file = options.model.stem().string() + ".html";
     const std::string bytes = is_page ? io::make_rom_page(trained.model(), content)
                                       : io::to_embedded(trained.model(), content);
     if (is_page) warn_large_page(bytes.size(), trained.model());

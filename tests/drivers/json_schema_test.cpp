@@ -225,4 +225,6 @@ range = [0.6, 1.4]
     check_command("optimize out/g/g.rom --stress-limit 1000 --displacement-limit 1 --starts 2",
                   "rom_optimize_schema.md");
     check_command("sensitivity out/g/g.rom --samples 16", "rom_sensitivity_schema.md");
+    check_command("merge g.toml out/g --out out/merged", "rom_merge_schema.md");
+    check_command("enrich g.toml --tolerance 0.5", "rom_enrich_schema.md");
 }

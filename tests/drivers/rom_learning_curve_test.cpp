@@ -22,7 +22,10 @@ TEST_CASE("learning curve: every beginning of the order fills the space", "[driv
 
 TEST_CASE("learning curve: a part of snapshots keeps all solutions of its geometries",
           "[drivers]") {
-    rom::SnapshotSet set{};
+    rom::Parameter size;
+    size.name = "size";
+    const rom::ParameterSpace parameters({size});
+    rom::SnapshotSet set{parameters, {}, {}, {}, {}, {}, {}, {}};
     set.geometry_points = MatrixX{{0.0}, {0.5}, {1.0}};
     set.mechanics_factors = {MatrixX{{0.0}, {1.0}}};
     set.control_points = MatrixX{{1.0, 2.0, 3.0}};
