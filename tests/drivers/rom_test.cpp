@@ -334,7 +334,48 @@ TEST_CASE("rom: what is wrong is said before anything is solved", "[drivers]") {
     two.replace(two.find(", \"z_low\""), 9, "");
     CHECK_THAT(error_of(two), Contains("reduced models are made of volumes"));
     CHECK_THAT(error_of(deck, "rom train f.toml --shard 3/2"), Contains("must read I/N"));
+    std::string periodic = deck;
+    periodic.replace(periodic.find("[0.6, 1.4]"), 10, "[0.6, 1.4]\nperiodic = true");
+    for (const std::string command : {"rom train f.toml", "check f.toml"}) {
+        CHECK_THAT(error_of(periodic, command),
+                   Contains("'hole_radius' is periodic, but control points at 0.6 and 1.4 differ"));
+    }
+    CHECK_THAT(error_of(model + "[rom]\ndesign = \"full\"\nsamples = 1\n" + parameters),
+               Contains("f.toml") && Contains("the design has 1 geometry"));
     CHECK_THAT(error_of(deck, "rom validate f.toml --out none"), Contains("there is no model"));
+}
+
+TEST_CASE("rom: check says what would be solved, and where there are no members", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    const auto checked = run_couture("check f.toml", folder.path());
+    CHECK(checked.exit_code == 0);
+    CHECK_THAT(checked.output, Contains("5 geometries x 1 loads x 3 materials = 15 snapshots"));
+    CHECK_THAT(checked.errors, !Contains("there is no member"));
+    std::string wide = deck;
+    wide.replace(wide.find("[0.6, 1.4]"), 10, "[0.6, 4.5]");
+    io::write_text(folder.path() / "f.toml", wide);
+    const auto warned = run_couture("check f.toml", folder.path());
+    CHECK(warned.exit_code == 0);
+    CHECK_THAT(warned.errors, Contains("there is no member at hole_radius = 4.5"));
+    // Shapes alone need no supports.
+    std::string shape = model.substr(0, model.find("[[symmetry]]"));
+    shape += "[rom]\ndesign = \"full\"\nsamples = 5\n" +
+             parameters.substr(0, parameters.find("[[rom.parameter]]\nname"));
+    io::write_text(folder.path() / "f.toml", shape);
+    CHECK(run_couture("check f.toml", folder.path()).exit_code == 0);
+}
+
+TEST_CASE("rom: exports overwrite nothing of another kind", "[drivers]") {
+    const TemporaryFolder folder;
+    io::write_text(folder.path() / "f.toml", deck);
+    REQUIRE(run_couture("rom train f.toml --out o", folder.path()).exit_code == 0);
+    for (const std::string option : {"--binary a.html", "--binary o/f.rom", "--html a.bin"}) {
+        CAPTURE(option);
+        const auto result = run_couture("rom export o/f.rom " + option, folder.path());
+        CHECK(result.exit_code == 2);
+    }
+    CHECK(run_couture("rom eval o/f.rom", folder.path()).exit_code == 0);
 }
 
 TEST_CASE("rom: answers outside of the box are marked, models of other files refused",

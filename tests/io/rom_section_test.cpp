@@ -124,6 +124,12 @@ TEST_CASE("rom section: mistakes are named with their place", "[io]") {
                Contains("must not hold 0"));
     CHECK_THAT(one("key = \"resultant.0.force.1\"\nrange = [1, 2]\nunit = \"Nm2x\"\n"),
                Contains("unit"));
+    CHECK_THAT(one("key = \"resultant.0.force.1\"\nrange = [1, 2]\nlevels = 1\n"),
+               Contains("it must be in [2, 1000]"));
+    CHECK_THAT(error_of("[rom]\n" + radius +
+                        "[[rom.parameter]]\nname = \"again\"\nkey = "
+                        "\"geometry.parameters.hole_radius\"\nrange = [1, 2]\n"),
+               Contains("have the same key 'geometry.parameters.hole_radius'"));
     CHECK_THAT(one("key = \"resultant.0.force.1\"\nrange = [1, 2]\ncolour = 1\n"),
                Contains("unknown key 'colour'"));
 }
