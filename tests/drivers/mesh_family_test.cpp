@@ -178,7 +178,7 @@ TEST_CASE("mesh family: members that fold are reported with a picture, the other
     };
     // The third folds between its elements, the fourth runs through itself.
     for (const auto& [name, degrees] : {std::pair("straight", 0.0), std::pair("quarter", 90.0),
-                                        std::pair("hook", 270.0), std::pair("coil", 400.0)}) {
+                                        std::pair("hook", 345.0), std::pair("coil", 400.0)}) {
         io::write_text(folder.path() / (std::string(name) + ".off"), bent_bar(degrees));
     }
     io::write_text(folder.path() / "m.csv", "surface\nhook.off\ncoil.off\nquarter.off\n");
@@ -209,7 +209,7 @@ TEST_CASE("mesh family: members that fold are reported with a picture, the other
     // Mended, and one that was done folds now: nothing of the earlier runs is left of either.
     io::write_text(folder.path() / "hook.off", bent_bar(60.0));
     io::write_text(folder.path() / "coil.off", bent_bar(-60.0));
-    io::write_text(folder.path() / "quarter.off", bent_bar(270.0));
+    io::write_text(folder.path() / "quarter.off", bent_bar(345.0));
     const auto again = run_couture("mesh f.toml --out o", folder.path());
     CHECK(again.exit_code == 1);
     CHECK_THAT(again.output, Contains("3 of 4 members done"));
