@@ -5,10 +5,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <functional>
+
 #include <sstream>
 #include <vector>
 
 #include "io/atomic_file.h"
+#include "io/mesh_deck.h"
 #include "tests/drivers/run_program.h"
 
 using namespace couture;
