@@ -26,8 +26,9 @@ TEST_CASE("relocate nodes: a cube off the centre of a sphere becomes even", "[pa
     const LaidOutSurface sphere = make_sphere_layout(14, {0.4, 0.3, 0.5});
     const LayoutSamples start = samples_of(sphere, 6);
     // Nothing holds a sphere's nodes from turning together: it takes long until they stand still.
-    const RelocatedSamples moved =
-        relocate_nodes(sphere.mesh, sphere.embedding, start, {.tolerance = 1e-5});
+    NodeRelocationOptions options;
+    options.tolerance = 1e-5;
+    const RelocatedSamples moved = relocate_nodes(sphere.mesh, sphere.embedding, start, options);
     CHECK(moved.report.is_converged);
     CHECK(moved.report.n_inverted == 0);
     CHECK(moved.report.largest_move > 0.5);
