@@ -16,7 +16,7 @@ struct NodeRelocationOptions {
     double area_part = 0.5;
     int max_iterations = 60;
     /// It ends when a step lowers the energy by less than this part of it.
-    double tolerance = 1e-8;
+    double tolerance = 1e-5;
 };
 
 struct NodeRelocationReport {
