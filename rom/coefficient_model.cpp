@@ -51,8 +51,8 @@ Trend chosen_trend(const TensorDesign& design, const MatrixX& values, KrigingOpt
     Trend best = Trend::constant;
     double least = std::numeric_limits<double>::infinity();
     for (const Trend trend : {Trend::constant, Trend::linear, Trend::quadratic}) {
-        const int n_terms = n_independent_terms(design.points(), trend);
-        if (2 * (n_terms - 1) > values.rows()) break;
+        const int n_terms = n_trend_functions(trend, design.n_parameters());
+        if (trend != Trend::constant && 2 * n_terms > values.rows()) break;
         options.trend = trend;
         const double cost = leave_one_out_cost(design, values, options);
         if (cost < least) {
