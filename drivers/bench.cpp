@@ -169,6 +169,26 @@ CuttingRow measure_cutting(const std::string& part, const meshing::TriangleSoup&
     return row;
 }
 
+std::vector<CuttingRow> measure_all_cutting(bool quick) {
+    std::vector<CuttingRow> rows;
+    // About 2.5, 5, 10, 20, 50 and 100 thousand triangles.
+    const std::vector<double> edge_lengths =
+        quick ? std::vector<double>{8.7, 6.0} : std::vector<double>{8.7, 6.0, 4.3, 3.0, 1.93, 1.37};
+    for (const double edge_length : edge_lengths) {
+        log::info(fmt::format("loops and pants, edges of {}", edge_length));
+        rows.push_back(measure_cutting(
+            "sierpinski", meshing::make_part_surface("sierpinski", {}, edge_length).soup));
+    }
+    // About 1.6, 4.4 and 8.4 thousand triangles.
+    const std::vector<double> edge_lengths_30 =
+        quick ? std::vector<double>{1.0} : std::vector<double>{0.5, 0.37};
+    for (const double edge_length : edge_lengths_30) {
+        log::info(fmt::format("loops and pants of genus 30, edges of {}", edge_length));
+        rows.push_back(measure_cutting("perforated", perforated_plate(edge_length)));
+    }
+    return rows;
+}
+
 double microseconds_per_n_log_n(double seconds, int n) {
     return 1e6 * seconds / (n * std::log2(n));
 }
@@ -188,48 +208,60 @@ BenchResult run_benchmarks(const BenchOptions& options) {
         {"scalar", 2, 48},     {"scalar", 3, 16},    {"scalar", 3, 32},     {"scalar", 4, 24},
         {"elasticity", 1, 24}, {"elasticity", 2, 8}, {"elasticity", 2, 16}, {"elasticity", 2, 24},
         {"elasticity", 3, 16}, {"elasticity", 4, 12}};
+    const auto is_wanted = [&](const std::string& section) {
+        return options.only.empty() ||
+               std::ranges::find(options.only, section) != options.only.end();
+    };
     BenchResult result;
     for (int threads = 1; threads <= options.max_threads; ++threads) {
         log::info(fmt::format("machine limits, {} thread{}", threads, threads > 1 ? "s" : ""));
         result.limits.push_back(measure_machine(threads));
         for (const Case& c : options.quick ? quick : all) {
-            log::info(fmt::format("assembly {} p{} n{}", c.problem, c.degree, c.n_elements));
-            result.assembly.push_back(
-                measure_assembly(c.problem, c.degree, c.n_elements, threads, options.n_runs));
-        }
-    }
-    const std::vector<std::pair<int, int>> solves =
-        options.quick ? std::vector<std::pair<int, int>>{{1, 6}, {2, 6}}
-                      : std::vector<std::pair<int, int>>{{1, 16}, {2, 8}, {2, 16}, {3, 8}};
-    for (const auto& [degree, n_elements] : solves) {
-        for (const std::string& solver : linear_solver_names()) {
-            if (solver != "auto") {
-                log::info(fmt::format("solution {} p{} n{}", solver, degree, n_elements));
-                result.solves.push_back(measure_solve(solver, degree, n_elements));
+            if (is_wanted("assembly")) {
+                log::info(fmt::format("assembly {} p{} n{}", c.problem, c.degree, c.n_elements));
+                result.assembly.push_back(
+                    measure_assembly(c.problem, c.degree, c.n_elements, threads, options.n_runs));
             }
         }
     }
-    result.iterative = measure_iterative_solvers(options.quick);
-    // About 2.5, 5, 10, 20, 50 and 100 thousand triangles.
-    const std::vector<double> edge_lengths =
-        options.quick ? std::vector<double>{8.7, 6.0}
-                      : std::vector<double>{8.7, 6.0, 4.3, 3.0, 1.93, 1.37};
-    for (const double edge_length : edge_lengths) {
-        log::info(fmt::format("loops and pants, edges of {}", edge_length));
-        result.cuts.push_back(measure_cutting(
-            "sierpinski", meshing::make_part_surface("sierpinski", {}, edge_length).soup));
+    if (is_wanted("products")) {
+        result.products = measure_products(options.quick, options.max_threads);
     }
-    // About 1.6, 4.4 and 8.4 thousand triangles.
-    const std::vector<double> edge_lengths_30 =
-        options.quick ? std::vector<double>{1.0} : std::vector<double>{0.5, 0.37};
-    for (const double edge_length : edge_lengths_30) {
-        log::info(fmt::format("loops and pants of genus 30, edges of {}", edge_length));
-        result.cuts.push_back(measure_cutting("perforated", perforated_plate(edge_length)));
+    if (is_wanted("solution")) {
+        const std::vector<std::pair<int, int>> solves =
+            options.quick ? std::vector<std::pair<int, int>>{{1, 6}, {2, 6}}
+                          : std::vector<std::pair<int, int>>{{1, 16}, {2, 8}, {2, 16}, {3, 8}};
+        for (const auto& [degree, n_elements] : solves) {
+            for (const std::string& solver : linear_solver_names()) {
+                // With a matrix the last is fast diagonalization.
+                if (solver != "auto" && solver != "matrix_free") {
+                    log::info(fmt::format("solution {} p{} n{}", solver, degree, n_elements));
+                    result.solves.push_back(measure_solve(solver, degree, n_elements));
+                }
+            }
+        }
     }
-    result.meshing = measure_meshing(options.quick);
-    log::info("evaluation of reduced models");
-    result.evaluations = measure_evaluations(options.quick);
+    if (is_wanted("fast_diagonalization")) {
+        result.iterative = measure_iterative_solvers(options.quick);
+    }
+    if (is_wanted("cutting")) {
+        result.cuts = measure_all_cutting(options.quick);
+    }
+    if (is_wanted("meshing")) {
+        result.meshing = measure_meshing(options.quick);
+    }
+    if (is_wanted("evaluation")) {
+        log::info("evaluation of reduced models");
+        result.evaluations = measure_evaluations(options.quick);
+    }
     return result;
+}
+
+const std::vector<std::string>& bench_sections() {
+    static const std::vector<std::string> names{
+        "assembly", "products", "solution",  "fast_diagonalization",
+        "cutting",  "meshing",  "evaluation"};
+    return names;
 }
 
 std::string bench_text(const BenchResult& result) {
@@ -262,6 +294,7 @@ std::string bench_text(const BenchResult& result) {
                             row.setup_seconds, row.solve_seconds, row.iterations, row.residual,
                             row.memory > 0.0 ? fmt::format("{:.0f}", 1e-6 * row.memory) : "-");
     }
+    text += products_text(result.products, result.limits);
     text += iterative_text(result.iterative);
     text +=
         "\nLoops and pants: one thread, processor time; pants with their loops; us over n log2 n\n"
@@ -319,6 +352,20 @@ std::string bench_json(const BenchResult& result) {
                                     {"iterations", row.iterations},
                                     {"residual", row.residual},
                                     {"memory_bytes", row.memory}});
+    }
+    json["products"] = nlohmann::ordered_json::array();
+    for (const ProductRow& row : result.products) {
+        json["products"].push_back({{"problem", row.problem},
+                                    {"degree", row.degree},
+                                    {"elements_per_direction", row.n_elements},
+                                    {"threads", row.n_threads},
+                                    {"unknowns", row.n_unknowns},
+                                    {"assembly_seconds", row.assembly_seconds},
+                                    {"matrix_seconds", row.matrix_seconds},
+                                    {"matrix_bytes", row.matrix_bytes},
+                                    {"setup_seconds", row.setup_seconds},
+                                    {"operator_seconds", row.operator_seconds},
+                                    {"operator_bytes", row.operator_bytes}});
     }
     json["fast_diagonalization"] = nlohmann::ordered_json::array();
     for (const IterativeRow& row : result.iterative) {

@@ -55,12 +55,18 @@ struct BenchOptions {
     bool quick = false;
     int n_runs = 5;
     int max_threads = 2;
+    /// Sections to run (see `bench_sections`); empty: all.
+    std::vector<std::string> only;
 };
+
+/// Names of the sections that can be run by themselves: the arrays of the JSON.
+[[nodiscard]] const std::vector<std::string>& bench_sections();
 
 struct BenchResult {
     std::vector<iga::MachineLimits> limits;
     std::vector<AssemblyRow> assembly;
     std::vector<SolveRow> solves;
+    std::vector<ProductRow> products;
     std::vector<IterativeRow> iterative;
     std::vector<CuttingRow> cuts;
     std::vector<MeshingRow> meshing;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "drivers/bench.h"
 #include "drivers/summary.h"
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
@@ -398,6 +399,10 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
                       [&command, bench] { return run_bench(*bench, command.common); });
     sub->add_flag("--quick", bench->quick, "small cases only, a few seconds");
     sub->add_option("--save", bench->save, "also write the numbers to this JSON file");
+    sub->add_option("--compare", bench->compare,
+                    "set the times beside those that an earlier --save wrote");
+    sub->add_option("--only", bench->only, "run these sections only (default: all)")
+        ->check(CLI::IsMember(bench_sections()));
 
     sub = add_command(app, command, "compare", "say what differs between two results",
                       [&command, compare] { return run_compare(*compare, command.common); });

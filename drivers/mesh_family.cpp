@@ -90,6 +90,7 @@ class Family {
         deck.parameters = member.parameters;
         deck.surface = member.surface;
         deck.like = record_;
+        deck.solid.node_tolerance = meshing::family_node_tolerance;
         return deck;
     }
 

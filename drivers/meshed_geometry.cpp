@@ -10,6 +10,7 @@ io::MeshDeck member_mesh_deck(const io::Deck& deck, const std::filesystem::path&
     io::MeshDeck mesh = io::read_mesh_deck(deck.geometry.mesh);
     mesh.family.reset();
     mesh.stage = "volume";
+    mesh.solid.node_tolerance = meshing::family_node_tolerance;
     if (!like.empty()) mesh.like = like;
     if (mesh.part.empty() && !deck.geometry.parameters.empty()) {
         throw InputError(

@@ -8,9 +8,11 @@
 #include "iga/assembly/assembler.h"
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/elasticity.h"
+#include "iga/assembly/form_operator.h"
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/parallel.h"
 #include "iga/core/timer.h"
 #include "iga/linalg/conjugate_gradients.h"
 #include "iga/linalg/system_checks.h"
@@ -175,7 +177,7 @@ IterativeRow measure_iterative_solver(const std::string& problem_name, const std
     const Timer jacobi_timer;
     try {
         static_cast<void>(conjugate_gradients(
-            "jacobi", K, constraints.is_fixed, b,
+            "jacobi", [&](const VectorX& p) { return VectorX(K * p); }, constraints.is_fixed, b,
             [&](const VectorX& r) { return VectorX(r.cwiseQuotient(diagonal)); },
             {tolerance, max_jacobi_iterations, max_jacobi_iterations}, jacobi));
         row.jacobi_iterations = jacobi.iterations;
@@ -184,6 +186,80 @@ IterativeRow measure_iterative_solver(const std::string& problem_name, const std
     }
     row.jacobi_seconds = jacobi_timer.seconds();
     return row;
+}
+
+std::vector<ProductRow> measure_products(bool quick, int max_threads) {
+    struct Case {
+        int degree;
+        std::vector<int> n_elements;
+    };
+    const std::vector<Case> all = {
+        {1, {14, 31, 67}}, {2, {13, 30, 48, 67}}, {3, {12, 29, 44, 66}}, {4, {11, 28, 40}}};
+    const std::vector<Case> few = {{2, {8}}, {3, {6}}};
+    const Problem problem = make_problem("elasticity");
+    const int before = n_threads();
+    std::vector<ProductRow> rows;
+    for (const auto& [degree, sizes] : quick ? few : all) {
+        for (const int n : sizes) {
+            const KnotVector knots = KnotVector::uniform(degree, n);
+            const Space<3> space(make_geometry("annulus"), {{{knots, knots, knots}}});
+            const BilinearForm<3> form = stiffness_form<3>(problem, 1);
+            for (int threads = 1; threads <= max_threads; ++threads) {
+                log::info(fmt::format("products p{} n{}, {} threads", degree, n, threads));
+                set_n_threads(threads);
+                ProductRow row{"elasticity", degree, n, threads, 3 * space.n_dofs()};
+                const VectorX u = VectorX::LinSpaced(row.n_unknowns, -1.0, 1.0);
+                const auto best = [&](const auto& product) {
+                    double seconds = 1e300;
+                    double norm = 0.0;
+                    for (int run = 0; run < 5; ++run) {
+                        const Timer timer;
+                        norm += VectorX(product()).norm();
+                        seconds = std::min(seconds, timer.seconds());
+                    }
+                    return norm > 0.0 ? seconds : 0.0;
+                };
+                {
+                    const Timer assembly;
+                    const BlockMatrix K = assemble(space, form);
+                    row.assembly_seconds = assembly.seconds();
+                    row.matrix_bytes = static_cast<double>(K.memory());
+                    row.matrix_seconds = best([&] { return K * u; });
+                }
+                const Timer setup;
+                const FormOperator<3> by_form(space, form);
+                row.setup_seconds = setup.seconds();
+                row.operator_seconds = best([&] { return by_form * u; });
+                row.operator_bytes = static_cast<double>(by_form.memory());
+                rows.push_back(row);
+            }
+        }
+    }
+    set_n_threads(before);
+    return rows;
+}
+
+std::string products_text(const std::vector<ProductRow>& rows,
+                          const std::vector<MachineLimits>& limits) {
+    if (rows.empty()) {
+        return "";
+    }
+    std::string text =
+        "\nProducts: elasticity on the annulus, with the assembled matrix (upper triangle of "
+        "blocks) and without\n"
+        "  p   n  threads  unknowns  assembly s  matrix s  ns/unknown  of triad  matrix MB  "
+        "set-up s  free s  ns/unknown  free MB\n";
+    for (const ProductRow& row : rows) {
+        text += fmt::format(
+            "  {}  {:2}  {:7}  {:8}  {:10.3f}  {:8.4f}  {:10.0f}  {:7.0f}%  {:9.0f}  {:8.3f}  "
+            "{:6.4f}  {:10.0f}  {:7.0f}\n",
+            row.degree, row.n_elements, row.n_threads, row.n_unknowns, row.assembly_seconds,
+            row.matrix_seconds, 1e9 * row.matrix_seconds / row.n_unknowns,
+            100.0 * row.matrix_bytes / row.matrix_seconds / limits[row.n_threads - 1].triad,
+            1e-6 * row.matrix_bytes, row.setup_seconds, row.operator_seconds,
+            1e9 * row.operator_seconds / row.n_unknowns, 1e-6 * row.operator_bytes);
+    }
+    return text;
 }
 
 std::vector<IterativeRow> measure_iterative_solvers(bool quick) {

@@ -3,7 +3,31 @@
 #include <string>
 #include <vector>
 
+#include "iga/linalg/machine_limits.h"
+
 namespace couture::drivers {
+
+/// One product of elasticity's matrix, assembled or not, and a vector.
+struct ProductRow {
+    std::string problem;
+    int degree = 0;
+    int n_elements = 0;
+    int n_threads = 1;
+    int n_unknowns = 0;
+    double assembly_seconds = 0.0;
+    /// Best of several.
+    double matrix_seconds = 0.0;
+    double matrix_bytes = 0.0;
+    /// Of the operator: geometry at the quadrature points.
+    double setup_seconds = 0.0;
+    double operator_seconds = 0.0;
+    double operator_bytes = 0.0;
+};
+
+/// Annulus, degrees 1 to 4, from ten thousand unknowns to a million.
+[[nodiscard]] std::vector<ProductRow> measure_products(bool quick, int max_threads);
+[[nodiscard]] std::string products_text(const std::vector<ProductRow>& rows,
+                                        const std::vector<iga::MachineLimits>& limits);
 
 /// One system solved to 1e-8 by fast diagonalization, and by conjugate gradients with the matrix'
 /// diagonal for comparison: unit body force, one side held in all components.

@@ -171,6 +171,10 @@ struct BenchCommandOptions {
     bool quick = false;
     /// Where the numbers are also written as JSON; may be empty.
     std::filesystem::path save;
+    /// Numbers of an earlier run to set beside these; may be empty.
+    std::filesystem::path compare;
+    /// Sections to run; empty: all.
+    std::vector<std::string> only;
 };
 
 struct VerifyOptions {

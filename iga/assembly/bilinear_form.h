@@ -31,6 +31,27 @@ struct BilinearForm {
     [[nodiscard]] int size() const { return n_components * n_components * (d + 1) * (d + 1); }
 };
 
+/// A of a form at the points of a plane, [point][a][b][s][t]; of a constant form one for all.
+template <int d>
+void evaluate_coefficients(const BilinearForm<d>& form, int patch, const GeometryGrid<d>& grid,
+                           int i_plane, const GeometryPlane<d>& plane, Buffer<double>& A) {
+    const auto size = static_cast<std::size_t>(form.size());
+    if (form.is_constant()) {
+        A.assign(size, 0.0);
+        form.coefficients(patch, Vector3::Zero(), A.data());
+        return;
+    }
+    A.assign(plane.n_points * size, 0.0);
+    if (form.plane_coefficients) {
+        form.plane_coefficients(patch, grid, i_plane, plane, A.data());
+        return;
+    }
+    for (int q = 0; q < plane.n_points; ++q) {
+        form.coefficients(patch, Vector3(plane.x[3 * q], plane.x[3 * q + 1], plane.x[3 * q + 2]),
+                          &A[q * size]);
+    }
+}
+
 /// k times the product of gradients, plus c times the product of values.
 template <int d>
 [[nodiscard]] BilinearForm<d> scalar_form(double k, double c) {

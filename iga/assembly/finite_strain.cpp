@@ -325,7 +325,7 @@ MatrixX FiniteStrain<d>::internal_forces() const {
 }
 
 template <int d>
-void FiniteStrain<d>::tangent(BlockMatrix& matrix) const {
+BilinearForm<d> FiniteStrain<d>::tangent_form() const {
     BilinearForm<d> form;
     form.n_components = d;
     form.has_value = problem_.kinematics == Kinematics::axisymmetric;
@@ -363,7 +363,12 @@ void FiniteStrain<d>::tangent(BlockMatrix& matrix) const {
                 });
         }
     };
-    assemble_into(matrix, *reference_->space, form, n_gauss_points_);
+    return form;
+}
+
+template <int d>
+void FiniteStrain<d>::tangent(BlockMatrix& matrix) const {
+    assemble_into(matrix, *reference_->space, tangent_form(), n_gauss_points_);
     for (int p = 0; projection_ && p < reference_->space->n_patches(); ++p) {
         if (is_projected_[p] != 0 && projection_->is_elementwise(p)) {
             add_elementwise_stiffness(p, matrix);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "iga/assembly/bilinear_form.h"
 #include "iga/assembly/reference_configuration.h"
 #include "iga/assembly/volumetric_projection.h"
 #include "iga/linalg/block_matrix.h"
@@ -67,6 +68,11 @@ class FiniteStrain {
     /// Derivative of the internal forces, into a matrix made by `make_pattern`; without the
     /// `coupling`.
     void tangent(BlockMatrix& matrix) const;
+    /// The tangent as a form, without what projections add: reads the deformation whenever it is
+    /// asked. This must outlive it.
+    [[nodiscard]] BilinearForm<d> tangent_form() const;
+    /// A patch's volumetric part is projected.
+    [[nodiscard]] bool is_projected() const { return projection_.has_value(); }
     /// Of the patches whose projection reaches beyond elements; nothing if there are none.
     [[nodiscard]] std::optional<VolumetricCoupling> coupling() const;
     /// Integral of the stored energy.

@@ -1,6 +1,7 @@
 #include "iga/assembly/geometry_grid.h"
 
 #include "iga/core/error.h"
+#include "iga/core/format.h"
 #include "iga/spline/gauss.h"
 
 namespace couture::iga {
@@ -207,6 +208,21 @@ void GeometryGrid<d>::evaluate(int i_plane, GeometryPlane<d>& plane) const {
         plane.determinant[i_point] = det;
         plane.quadrature_weight[i_point] =
             lines_[0].weights[i_point % n0] * lines_[1].weights[i_point / n0] * plane_weight;
+    }
+}
+
+template <int d>
+void GeometryGrid<d>::require_orientation(int patch, int i_plane, const GeometryPlane<d>& plane,
+                                          double orientation) const {
+    for (int q = 0; q < plane.n_points; ++q) {
+        const double det = plane.determinant[q];
+        if (!(det * orientation > 0.0)) {
+            const Vector3 x(plane.x[3 * q], plane.x[3 * q + 1], plane.x[3 * q + 2]);
+            throw GeometryError(
+                "patch {} is folded: det J = {:.6g} at parameter {}, position {}, "
+                "but of the other sign elsewhere; repair the geometry there",
+                patch, det, format_point(parameter(i_plane, q)), format_point(x));
+        }
     }
 }
 

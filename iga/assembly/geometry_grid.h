@@ -86,6 +86,10 @@ class GeometryGrid {
     /// Fills `plane` for plane `i_plane`; no error is raised where det J vanishes, its inverse is
     /// then not finite.
     void evaluate(int i_plane, GeometryPlane<d>& plane) const;
+    /// @param orientation  the sign that det J must have everywhere
+    /// @throws GeometryError  where it has another or vanishes: patch, place, value
+    void require_orientation(int patch, int i_plane, const GeometryPlane<d>& plane,
+                             double orientation) const;
     /// Parameter of a point of a plane.
     [[nodiscard]] Vector<d> parameter(int i_plane, int i_point) const;
 

@@ -33,7 +33,7 @@ struct PatchIntegrator<d>::Workspace {
     /// Values of A's entries at four points.
     std::vector<Vector4d> values;
     /// Values of A at all points of the plane, if it is not constant.
-    std::vector<double> A;
+    Buffer<double> A;
 };
 
 template <int d>
@@ -180,28 +180,9 @@ template <int d>
 void PatchIntegrator<d>::fill_coefficients(int i_plane, int slot, Workspace& workspace) const {
     GeometryPlane<d>& plane = workspace.plane;
     grid_.evaluate(i_plane, plane);
-    for (int q = 0; q < plane.n_points; ++q) {
-        const double det = plane.determinant[q];
-        if (!(det * orientation_ > 0.0)) {
-            const Vector<d> xi = grid_.parameter(i_plane, q);
-            const Vector3 x(plane.x[3 * q], plane.x[3 * q + 1], plane.x[3 * q + 2]);
-            throw GeometryError(
-                "patch {} is folded: det J = {:.6g} at parameter {}, position {}, "
-                "but of the other sign elsewhere; repair the geometry there",
-                i_patch_, det, format_point(xi), format_point(x));
-        }
-    }
+    grid_.require_orientation(i_patch_, i_plane, plane, orientation_);
     if (!form_.is_constant()) {
-        const std::size_t size = form_.size();
-        workspace.A.assign(plane.n_points * size, 0.0);
-        if (form_.plane_coefficients) {
-            form_.plane_coefficients(i_patch_, grid_, i_plane, plane, workspace.A.data());
-        } else {
-            for (int q = 0; q < plane.n_points; ++q) {
-                const double* x = &plane.x[3 * static_cast<std::size_t>(q)];
-                form_.coefficients(i_patch_, Vector3(x[0], x[1], x[2]), &workspace.A[q * size]);
-            }
-        }
+        evaluate_coefficients(form_, i_patch_, grid_, i_plane, plane, workspace.A);
     }
     if (form_.has_value) {
         transform_coefficients<d + 1, d + 1>(slot, workspace);

@@ -72,6 +72,7 @@ CoarseFunctions make_coarse_functions(const Space<d>& space, int elements_per_no
     const DofMap nodes = make_dof_map(space.geometry(), grids);
     CoarseFunctions result;
     result.n_nodes = nodes.n_dofs;
+    result.nodes_of_patch = nodes.global;
     std::vector<std::vector<std::pair<int, double>>> entries(space.n_dofs());
     for (int p = 0; p < space.n_patches(); ++p) {
         const TensorSpace<d>& tensor = space.tensor(p);
@@ -105,6 +106,8 @@ CoarseFunctions make_coarse_functions(const Space<d>& space, int elements_per_no
                 }
             }
         }
+        auto& n_elements = result.n_elements.emplace_back(std::array<int, 3>{1, 1, 1});
+        std::ranges::copy(grids[p].n_elements(), n_elements.begin());
         auto& of_sides = result.nodes_on_side.emplace_back();
         auto& functions_of_sides = result.functions_on_side.emplace_back();
         for (int side = 0; side < n_sides<d>; ++side) {
@@ -138,11 +141,29 @@ CoarseSpace::CoarseSpace(const BlockMatrix& matrix, const std::vector<char>& is_
     : functions_(std::move(functions)),
       block_size_(matrix.block_size),
       is_fixed_(is_fixed),
-      is_turned_(matrix.n_rows, 0),
       translations_(translations) {
+    find_fixed_nodes();
+    matrix_ = std::make_unique<BlockMatrix>(galerkin(matrix));
+    factorize();
+}
+
+CoarseSpace::CoarseSpace(CoarseFunctions functions, BlockMatrix coarse,
+                         const std::vector<char>& is_fixed, const MatrixX& translations)
+    : functions_(std::move(functions)),
+      block_size_(coarse.block_size),
+      is_fixed_(is_fixed),
+      translations_(translations),
+      matrix_(std::make_unique<BlockMatrix>(std::move(coarse))) {
+    find_fixed_nodes();
+    factorize();
+}
+
+void CoarseSpace::find_fixed_nodes() {
     const int nc = block_size_;
-    for (int i = 0; i < matrix.n_rows && translations.size() > 0; ++i) {
-        is_turned_[i] = translations.middleRows(i * nc, nc).isIdentity() ? 0 : 1;
+    const int n_rows = static_cast<int>(functions_.begin.size()) - 1;
+    is_turned_.assign(n_rows, 0);
+    for (int i = 0; i < n_rows && translations_.size() > 0; ++i) {
+        is_turned_[i] = translations_.middleRows(i * nc, nc).isIdentity() ? 0 : 1;
     }
     is_node_fixed_.assign(static_cast<std::size_t>(functions_.n_nodes) * nc, 0);
     for (std::size_t p = 0; p < functions_.nodes_on_side.size(); ++p) {
@@ -158,7 +179,10 @@ CoarseSpace::CoarseSpace(const BlockMatrix& matrix, const std::vector<char>& is_
             }
         }
     }
-    make_matrix(matrix);
+}
+
+void CoarseSpace::factorize() {
+    const int nc = block_size_;
     // Nodes all of whose functions are fixed otherwise.
     for (int node = 0; node < functions_.n_nodes; ++node) {
         const double* diagonal = matrix_->find(node, node);
@@ -186,7 +210,7 @@ MatrixX CoarseSpace::block(int i) const {
     return result;
 }
 
-void CoarseSpace::make_matrix(const BlockMatrix& A) {
+BlockMatrix CoarseSpace::galerkin(const BlockMatrix& A) const {
     const int nc = block_size_;
     const int n_values = nc * nc;
     // Blocks of P that are not the identity.
@@ -284,26 +308,27 @@ void CoarseSpace::make_matrix(const BlockMatrix& A) {
             }
         }
     }
-    matrix_ = std::make_unique<BlockMatrix>();
-    matrix_->block_size = nc;
-    matrix_->n_rows = functions_.n_nodes;
-    matrix_->row_begin.push_back(0);
+    BlockMatrix result;
+    result.block_size = nc;
+    result.n_rows = functions_.n_nodes;
+    result.row_begin.push_back(0);
     for (auto& row : upper) {
         std::stable_sort(row.begin(), row.end(),
                          [](const auto& a, const auto& b) { return a.first < b.first; });
         for (const auto& [column, value] : row) {
-            if (static_cast<std::int64_t>(matrix_->columns.size()) == matrix_->row_begin.back() ||
-                matrix_->columns.back() != column) {
-                matrix_->columns.push_back(column);
-                matrix_->values.resize(matrix_->columns.size() * n_values, 0.0);
-                std::fill_n(matrix_->values.end() - n_values, n_values, 0.0);
+            if (static_cast<std::int64_t>(result.columns.size()) == result.row_begin.back() ||
+                result.columns.back() != column) {
+                result.columns.push_back(column);
+                result.values.resize(result.columns.size() * n_values, 0.0);
+                std::fill_n(result.values.end() - n_values, n_values, 0.0);
             }
             for (int v = 0; v < n_values; ++v) {
-                *(matrix_->values.end() - n_values + v) += value.data()[v];
+                *(result.values.end() - n_values + v) += value.data()[v];
             }
         }
-        matrix_->row_begin.push_back(matrix_->n_blocks());
+        result.row_begin.push_back(result.n_blocks());
     }
+    return result;
 }
 
 VectorX CoarseSpace::apply(const VectorX& r) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "iga/linalg/block_matrix.h"
@@ -16,6 +17,10 @@ struct CoarseFunctions {
     std::vector<std::int64_t> begin;
     std::vector<int> nodes;
     std::vector<double> weights;
+    /// Of each patch the elements of its grid in each direction (1 in one that is missing), and its
+    /// nodes, first direction fastest.
+    std::vector<std::array<int, 3>> n_elements;
+    std::vector<std::vector<int>> nodes_of_patch;
     /// [patch][side]: nodes on the side.
     std::vector<std::vector<std::vector<int>>> nodes_on_side;
     /// [patch][side]: functions of the space on the side.
@@ -37,6 +42,9 @@ class CoarseSpace {
     ///                      those of the components
     CoarseSpace(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
                 const MatrixX& translations, CoarseFunctions functions);
+    /// @param coarse  spectrally equivalent to P^T A P: upper triangle of blocks of all nodes
+    CoarseSpace(CoarseFunctions functions, BlockMatrix coarse, const std::vector<char>& is_fixed,
+                const MatrixX& translations);
 
     [[nodiscard]] VectorX apply(const VectorX& r) const;
     [[nodiscard]] int n_unknowns() const { return matrix_->n_unknowns(); }
@@ -45,7 +53,9 @@ class CoarseSpace {
   private:
     /// Block of function i in P without the weight.
     [[nodiscard]] MatrixX block(int i) const;
-    void make_matrix(const BlockMatrix& matrix);
+    [[nodiscard]] BlockMatrix galerkin(const BlockMatrix& matrix) const;
+    void find_fixed_nodes();
+    void factorize();
 
     CoarseFunctions functions_;
     int block_size_;

@@ -27,7 +27,8 @@ void require_positive(double energy, const std::string& solver, const char* what
 
 }  // namespace
 
-VectorX conjugate_gradients(const std::string& solver, const BlockMatrix& A,
+VectorX conjugate_gradients(const std::string& solver,
+                            const std::function<VectorX(const VectorX&)>& A,
                             const std::vector<char>& is_fixed, const VectorX& b,
                             const std::function<VectorX(const VectorX&)>& precondition,
                             const ConjugateGradientOptions& options, SolveReport& report) {
@@ -50,7 +51,7 @@ VectorX conjugate_gradients(const std::string& solver, const BlockMatrix& A,
         int n_idle = 0;
         while (r.norm() > goal && n_iterations < options.max_iterations) {
             require_positive(rz, solver, "preconditioner");
-            const VectorX Ap = free_part(is_fixed, A * p);
+            const VectorX Ap = free_part(is_fixed, A(p));
             const double energy = p.dot(Ap);
             require_positive(energy, solver, "matrix");
             const double alpha = rz / energy;
@@ -70,7 +71,7 @@ VectorX conjugate_gradients(const std::string& solver, const BlockMatrix& A,
             rz = next_rz;
         }
         const VectorX better_x = x + step;
-        r = residual(A, is_fixed, b, better_x);
+        r = free_part(is_fixed, b - A(better_x));
         const double better_ratio = r.norm() / b_norm;
         if (!(better_ratio < ratio)) {
             break;

@@ -19,7 +19,7 @@ struct ConjugateGradientOptions {
 /// true one at the end, as often as that helps.
 ///
 /// @param solver  name that messages begin with
-/// @param A  symmetric
+/// @param A  product of a symmetric matrix and a vector
 /// @param is_fixed  n_unknowns flags or empty; x is zero there
 /// @param b  zero at fixed unknowns
 /// @param precondition  symmetric positive definite, zero at fixed unknowns
@@ -29,8 +29,9 @@ struct ConjugateGradientOptions {
 ///
 /// Source: [NocedalWright06] Alg. 5.3.
 [[nodiscard]] VectorX conjugate_gradients(
-    const std::string& solver, const BlockMatrix& A, const std::vector<char>& is_fixed,
-    const VectorX& b, const std::function<VectorX(const VectorX&)>& precondition,
+    const std::string& solver, const std::function<VectorX(const VectorX&)>& A,
+    const std::vector<char>& is_fixed, const VectorX& b,
+    const std::function<VectorX(const VectorX&)>& precondition,
     const ConjugateGradientOptions& options, SolveReport& report);
 
 }  // namespace couture::iga

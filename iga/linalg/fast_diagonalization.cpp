@@ -21,10 +21,14 @@ constexpr double max_coarse_elements = 4000.0;
 constexpr double wire_tolerance = 1e-6;
 
 /// The translations among the rigid-body modes, if they come first.
-MatrixX translations_of(const LinearSystem& system) {
-    const int nc = system.matrix.block_size;
-    return system.near_null_space.cols() > nc ? MatrixX(system.near_null_space.leftCols(nc))
-                                              : MatrixX();
+MatrixX translations_of(const MatrixX& near_null_space, int nc) {
+    return near_null_space.cols() > nc ? MatrixX(near_null_space.leftCols(nc)) : MatrixX();
+}
+
+template <int d>
+CoarseFunctions coarse_functions(const Space<d>& space) {
+    const double n_max = std::pow(max_coarse_elements / space.n_patches(), 1.0 / d);
+    return make_coarse_functions(space, elements_per_node, std::max(1, static_cast<int>(n_max)));
 }
 
 class FastDiagonalizationSolver final : public LinearSolver {
@@ -58,8 +62,9 @@ class FastDiagonalizationSolver final : public LinearSolver {
         x = MatrixX::Zero(b.rows(), b.cols());
         for (Eigen::Index k = 0; k < b.cols(); ++k) {
             x.col(k) = conjugate_gradients(
-                solver_name, *matrix_, is_fixed_, free_b.col(k),
-                [this](const VectorX& r) { return preconditioner_->apply(r); }, options, report);
+                solver_name, [this](const VectorX& p) { return VectorX(*matrix_ * p); }, is_fixed_,
+                free_b.col(k), [this](const VectorX& r) { return preconditioner_->apply(r); },
+                options, report);
         }
         return report;
     }
@@ -84,13 +89,10 @@ FastDiagonalization::FastDiagonalization(const LinearSystem& system) {
         }
         const PatchStructure structure = make_patch_structure(space);
         patches_ = std::make_unique<PatchPreconditioner>(A, is_fixed, structure);
-        make_wire_basket(A, is_fixed, structure);
-        const int n_max =
-            std::max(1, static_cast<int>(std::pow(max_coarse_elements / space.n_patches(),
-                                                  2.0 / structure.n_sides)));
-        coarse_ =
-            std::make_unique<CoarseSpace>(A, is_fixed, translations_of(system),
-                                          make_coarse_functions(space, elements_per_node, n_max));
+        make_wire_basket(A, is_fixed, structure, {});
+        coarse_ = std::make_unique<CoarseSpace>(
+            A, is_fixed, translations_of(system.near_null_space, A.block_size),
+            coarse_functions(space));
     };
     if (const auto* volume = std::get_if<const Space<3>*>(&system.space)) {
         make(**volume);
@@ -101,14 +103,40 @@ FastDiagonalization::FastDiagonalization(const LinearSystem& system) {
     }
 }
 
+template <int d>
+FastDiagonalization::FastDiagonalization(const Space<d>& space, const MatrixFreeParts& parts) {
+    const PatchStructure structure = make_patch_structure(space);
+    patches_ = std::make_unique<PatchPreconditioner>(parts.coefficients, parts.diagonal,
+                                                     parts.is_fixed, structure);
+    std::vector<int> wire;
+    for (int i = 0; i < structure.n_dofs; ++i) {
+        if (structure.places[i] == Place::wire) {
+            wire.push_back(i);
+        }
+    }
+    if (!wire.empty()) {
+        make_wire_basket(parts.submatrix(wire), parts.is_fixed, structure, wire);
+    }
+    CoarseFunctions functions = coarse_functions(space);
+    BlockMatrix coarse = parts.coarse_matrix(functions);
+    coarse_ = std::make_unique<CoarseSpace>(
+        std::move(functions), std::move(coarse), parts.is_fixed,
+        translations_of(parts.near_null_space, parts.block_size));
+}
+
+template FastDiagonalization::FastDiagonalization(const Space<2>&, const MatrixFreeParts&);
+template FastDiagonalization::FastDiagonalization(const Space<3>&, const MatrixFreeParts&);
+
 void FastDiagonalization::make_wire_basket(const BlockMatrix& matrix,
                                            const std::vector<char>& is_fixed,
-                                           const PatchStructure& structure) {
-    std::vector<char> is_elsewhere = is_fixed;
+                                           const PatchStructure& structure,
+                                           const std::vector<int>& functions) {
+    const int nc = matrix.block_size;
+    std::vector<char> is_elsewhere(matrix.n_unknowns());
     for (int i = 0; i < matrix.n_unknowns(); ++i) {
-        if (structure.places[i / matrix.block_size] != Place::wire) {
-            is_elsewhere[i] = 1;
-        }
+        const int function = functions.empty() ? i / nc : functions[i / nc];
+        const bool is_wire = structure.places[function] == Place::wire;
+        is_elsewhere[i] = is_wire ? is_fixed[function * nc + i % nc] : 1;
     }
     if (std::find(is_elsewhere.begin(), is_elsewhere.end(), 0) == is_elsewhere.end()) {
         return;
@@ -119,6 +147,9 @@ void FastDiagonalization::make_wire_basket(const BlockMatrix& matrix,
     options.tolerance = wire_tolerance;
     wire_solver_ = make_cholmod_solver(options);
     wire_solver_->factorize({*wire_matrix_, {}, {}});
+    for (int& unknown : wire_unknowns_) {
+        unknown = functions.empty() ? unknown : functions[unknown / nc] * nc + unknown % nc;
+    }
 }
 
 VectorX FastDiagonalization::apply(const VectorX& r) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "iga/linalg/coarse_space.h"
@@ -8,6 +9,23 @@
 
 namespace couture::iga {
 
+/// What the preconditioner must know of a matrix A that is not assembled.
+struct MatrixFreeParts {
+    int block_size = 1;
+    /// n_unknowns flags.
+    std::vector<char> is_fixed;
+    /// As in `LinearSystem`.
+    MatrixX near_null_space;
+    /// Of each patch one per component: see `patch_coefficients`.
+    std::vector<std::vector<PatchCoefficients>> coefficients;
+    /// Of A.
+    VectorX diagonal;
+    /// Blocks of A between some functions (ascending), upper triangle.
+    std::function<BlockMatrix(const std::vector<int>& functions)> submatrix;
+    /// What P^T A P of coarse functions P is spectrally equivalent to, upper triangle.
+    std::function<BlockMatrix(const CoarseFunctions&)> coarse_matrix;
+};
+
 /// Symmetric positive definite approximation of A^-1, a sum of three: patches and their interfaces
 /// by fast diagonalization, the wire basket (functions where interfaces meet) by a factorization of
 /// its part of A, and multilinear functions on a coarse grid.
@@ -15,14 +33,17 @@ class FastDiagonalization {
   public:
     /// @throws InputError  if the system has no space
     explicit FastDiagonalization(const LinearSystem& system);
+    template <int d>
+    FastDiagonalization(const Space<d>& space, const MatrixFreeParts& parts);
 
     /// @param r  zero at fixed unknowns
     [[nodiscard]] VectorX apply(const VectorX& r) const;
     [[nodiscard]] std::size_t memory() const;
 
   private:
+    /// @param matrix  of the functions with these numbers; empty: of all
     void make_wire_basket(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
-                          const PatchStructure& structure);
+                          const PatchStructure& structure, const std::vector<int>& functions);
 
     std::unique_ptr<PatchPreconditioner> patches_;
     std::unique_ptr<CoarseSpace> coarse_;

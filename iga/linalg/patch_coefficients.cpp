@@ -105,21 +105,28 @@ std::vector<PatchCoefficients> patch_coefficients(const BlockMatrix& matrix,
     }
     std::vector<PatchCoefficients> result(nc);
     for (int c = 0; c < nc; ++c) {
-        double largest = 0.0;
         for (int k = 0; k < 3; ++k) {
-            result[c].stretch[k] = functions.size(k) > 1 ? -sum(k, c) / volume : 0.0;
-            largest = std::max(largest, result[c].stretch[k]);
+            result[c].stretch[k] = -sum(k, c) / volume;
         }
-        for (int k = 0; k < 3; ++k) {
-            // A matrix without stiffness, like a mass matrix, has no positive moments.
-            const double least = largest > 0.0 ? smallest_stretch * largest : 1.0;
-            result[c].stretch[k] =
-                functions.size(k) > 1 ? std::max(result[c].stretch[k], least) : 0.0;
-        }
-        const double reaction = sum(3, c) / volume;
-        result[c].reaction = reaction > smallest_reaction * largest ? reaction : 0.0;
+        result[c].reaction = sum(3, c) / volume;
+        make_definite(result[c], functions.size(2) > 1 ? 3 : 2);
     }
     return result;
+}
+
+void make_definite(PatchCoefficients& coefficients, int n_directions) {
+    double largest = 0.0;
+    for (int k = 0; k < n_directions; ++k) {
+        largest = std::max(largest, coefficients.stretch[k]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        // A matrix without stiffness, like a mass matrix, has no positive moments.
+        const double least = largest > 0.0 ? smallest_stretch * largest : 1.0;
+        double& stretch = coefficients.stretch[k];
+        stretch = k < n_directions ? std::max(stretch, least) : 0.0;
+    }
+    double& reaction = coefficients.reaction;
+    reaction = reaction > smallest_reaction * largest ? reaction : 0.0;
 }
 
 }  // namespace couture::iga

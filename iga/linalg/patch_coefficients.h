@@ -21,4 +21,8 @@ struct PatchCoefficients {
                                                                 const PatchStructure& structure,
                                                                 int patch);
 
+/// Raises stretches of the first n directions that are nearly zero or negative, sets those of the
+/// others to zero, and clears a reaction that is small beside them.
+void make_definite(PatchCoefficients& coefficients, int n_directions);
+
 }  // namespace couture::iga

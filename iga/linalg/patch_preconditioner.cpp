@@ -60,6 +60,18 @@ struct Slabs {
     }
 };
 
+VectorX diagonal_of(const BlockMatrix& matrix) {
+    const int nc = matrix.block_size;
+    VectorX diagonal(matrix.n_unknowns());
+    for (int row = 0; row < matrix.n_rows; ++row) {
+        const double* block = matrix.find(row, row);
+        for (int c = 0; c < nc; ++c) {
+            diagonal[row * nc + c] = block[c * nc + c];
+        }
+    }
+    return diagonal;
+}
+
 /// Columns of a univariate matrix that belong to a box.
 auto inner_columns(const MatrixX& matrix, const BoxSolver& box, int direction) {
     return matrix.middleCols(box.first(direction), box.size(direction));
@@ -70,10 +82,25 @@ auto inner_columns(const MatrixX& matrix, const BoxSolver& box, int direction) {
 PatchPreconditioner::PatchPreconditioner(const BlockMatrix& matrix,
                                          const std::vector<char>& is_fixed,
                                          const PatchStructure& structure)
+    : PatchPreconditioner(
+          [&] {
+              std::vector<std::vector<PatchCoefficients>> coefficients;
+              for (std::size_t p = 0; p < structure.patches.size(); ++p) {
+                  coefficients.push_back(
+                      patch_coefficients(matrix, structure, static_cast<int>(p)));
+              }
+              return coefficients;
+          }(),
+          diagonal_of(matrix), is_fixed, structure) {}
+
+PatchPreconditioner::PatchPreconditioner(
+    const std::vector<std::vector<PatchCoefficients>>& coefficients, const VectorX& diagonal,
+    const std::vector<char>& is_fixed, const PatchStructure& structure)
     : structure_(structure) {
-    make_interiors(matrix, is_fixed);
-    make_faces(is_fixed, matrix.block_size);
-    make_scaling(matrix);
+    const int nc = static_cast<int>(coefficients.front().size());
+    make_interiors(coefficients, is_fixed);
+    make_faces(is_fixed, nc);
+    make_scaling(diagonal, nc);
 }
 
 std::shared_ptr<const Eigenbasis> PatchPreconditioner::eigenbasis(
@@ -90,14 +117,13 @@ std::shared_ptr<const Eigenbasis> PatchPreconditioner::eigenbasis(
     return known_bases_.back().basis;
 }
 
-void PatchPreconditioner::make_interiors(const BlockMatrix& matrix,
-                                         const std::vector<char>& is_fixed) {
-    const int nc = matrix.block_size;
+void PatchPreconditioner::make_interiors(
+    const std::vector<std::vector<PatchCoefficients>>& coefficients,
+    const std::vector<char>& is_fixed) {
+    const int nc = static_cast<int>(coefficients.front().size());
     for (std::size_t p = 0; p < structure_.patches.size(); ++p) {
         const int patch = static_cast<int>(p);
         const PatchFunctions& functions = structure_.patches[p];
-        const std::vector<PatchCoefficients> coefficients =
-            patch_coefficients(matrix, structure_, patch);
         for (int c = 0; c < nc; ++c) {
             const auto is_free = [&](int f) {
                 const int dof = functions.dofs[f];
@@ -113,7 +139,8 @@ void PatchPreconditioner::make_interiors(const BlockMatrix& matrix,
                 }
                 bases[k] = eigenbasis(functions.directions[k], is_closed[0], is_closed[1]);
             }
-            Interior interior{patch, c, coefficients[c], BoxSolver(bases, coefficients[c]), {}, {}};
+            Interior interior{patch, c, coefficients[p][c], BoxSolver(bases, coefficients[p][c]),
+                              {},    {}};
             interior.unknowns.reserve(interior.solver.size());
             const BoxSolver& box = interior.solver;
             for (int i2 = box.first(2); i2 < box.first(2) + box.size(2); ++i2) {
@@ -217,9 +244,8 @@ VectorX PatchPreconditioner::schur_values(const Interior& interior, int side,
     return result;
 }
 
-void PatchPreconditioner::make_scaling(const BlockMatrix& matrix) {
-    const int nc = matrix.block_size;
-    VectorX diagonal = VectorX::Zero(matrix.n_unknowns());
+void PatchPreconditioner::make_scaling(const VectorX& diagonal_of_A, int nc) {
+    VectorX diagonal = VectorX::Zero(diagonal_of_A.size());
     for (const Interior& interior : interiors_) {
         const PatchFunctions& functions = structure_.patches[interior.patch];
         std::array<VectorX, 3> K;
@@ -243,13 +269,10 @@ void PatchPreconditioner::make_scaling(const BlockMatrix& matrix) {
             }
         }
     }
-    scaling_.resize(matrix.n_unknowns());
-    for (int row = 0; row < matrix.n_rows; ++row) {
-        const double* block = matrix.find(row, row);
-        for (int c = 0; c < nc; ++c) {
-            const double ratio = block[c * nc + c] / diagonal[row * nc + c];
-            scaling_[row * nc + c] = ratio > 0.0 && std::isfinite(ratio) ? std::sqrt(ratio) : 1.0;
-        }
+    scaling_.resize(diagonal.size());
+    for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+        const double ratio = diagonal_of_A[i] / diagonal[i];
+        scaling_[i] = ratio > 0.0 && std::isfinite(ratio) ? std::sqrt(ratio) : 1.0;
     }
 }
 

@@ -18,6 +18,11 @@ class PatchPreconditioner {
     /// @param is_fixed  n_unknowns flags
     PatchPreconditioner(const BlockMatrix& matrix, const std::vector<char>& is_fixed,
                         const PatchStructure& structure);
+    /// @param coefficients  of each patch one per component
+    /// @param diagonal  of A
+    PatchPreconditioner(const std::vector<std::vector<PatchCoefficients>>& coefficients,
+                        const VectorX& diagonal, const std::vector<char>& is_fixed,
+                        const PatchStructure& structure);
 
     /// A^-1 r, about.
     [[nodiscard]] VectorX apply(const VectorX& r) const;
@@ -50,9 +55,10 @@ class PatchPreconditioner {
         MatrixX inverses;
     };
 
-    void make_interiors(const BlockMatrix& matrix, const std::vector<char>& is_fixed);
+    void make_interiors(const std::vector<std::vector<PatchCoefficients>>& coefficients,
+                        const std::vector<char>& is_fixed);
     void make_faces(const std::vector<char>& is_fixed, int nc);
-    void make_scaling(const BlockMatrix& matrix);
+    void make_scaling(const VectorX& diagonal_of_A, int nc);
     [[nodiscard]] std::shared_ptr<const Eigenbasis> eigenbasis(
         const std::shared_ptr<const Univariate>& functions, bool without_first, bool without_last);
     /// Eigenvalues of the Schur complement of one side's patch: elimination of the interior in the

@@ -97,7 +97,7 @@ std::unique_ptr<LinearSolver> make_linear_solver(const SolverOptions& options) {
     if (options.name == "cholmod") {
         return make_cholmod_solver(options);
     }
-    if (options.name == "fast_diagonalization") {
+    if (options.name == "fast_diagonalization" || options.name == "matrix_free") {
         return make_fast_diagonalization_solver(options);
     }
     if (options.name == "petsc") {
@@ -111,8 +111,8 @@ std::unique_ptr<LinearSolver> make_linear_solver(const SolverOptions& options) {
 }
 
 const std::vector<std::string>& linear_solver_names() {
-    static const std::vector<std::string> names{"auto", "cholmod", "fast_diagonalization", "petsc",
-                                                "umfpack"};
+    static const std::vector<std::string> names{"auto",        "cholmod", "fast_diagonalization",
+                                                "matrix_free", "petsc",   "umfpack"};
     return names;
 }
 

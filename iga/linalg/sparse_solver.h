@@ -26,7 +26,8 @@ struct LinearSystem {
 };
 
 struct SolverOptions {
-    /// "auto", "cholmod", "fast_diagonalization", "petsc" or "umfpack".
+    /// "auto", "cholmod", "fast_diagonalization", "matrix_free" (the same where there is a matrix),
+    /// "petsc" or "umfpack".
     std::string name = "auto";
     /// Largest accepted |b - A x| / |b|. A direct solver may also stop at the rounding of A x where
     /// that is larger, up to 1e-6, and says so in the report's note.

@@ -91,8 +91,15 @@ Equilibrium<d>::Equilibrium(ReferencePtr<d> reference, const Problem& problem, d
       solver_options_(solver),
       foundations_(assemble_foundations(*undeformed_, problem, n_gauss_points)),
       body_(reference_, problem, n_gauss_points, volumetric),
-      solver_(make_linear_solver(solver)),
-      matrix_(make_pattern(*reference_->space, d)) {
+      solver_(make_linear_solver(solver)) {
+    if (!is_matrix_free()) {
+        matrix_ = make_pattern(*reference_->space, d);
+    } else if (body_.is_projected()) {
+        throw InputError(
+            "linear = \"matrix_free\" does not hold the projected volumetric part of nearly "
+            "incompressible materials; set volumetric = \"full\" in [discretization] or take "
+            "another linear solver");
+    }
     require_held(*undeformed_, problem, make_constraints(*undeformed_, problem, {""}),
                  foundations_);
 }
@@ -133,7 +140,7 @@ bool Equilibrium<d>::move_to(const LoadState<d>& loads, const MatrixX& unknowns)
 
 template <int d>
 double Equilibrium<d>::stiffness_scale() const {
-    double largest = 0.0;
+    double largest = system_ ? system_->scale() : 0.0;
     for (const double value : matrix_.values) {
         largest = std::max(largest, std::abs(value));
     }
@@ -142,11 +149,19 @@ double Equilibrium<d>::stiffness_scale() const {
 
 template <int d>
 void Equilibrium<d>::linearize(const LoadState<d>& loads) {
-    body_.tangent(matrix_);
-    add_symmetric(matrix_, foundations_);
+    if (is_matrix_free()) {
+        matrix_ = {};
+        system_ =
+            std::make_unique<MatrixFreeSystem<d>>(*reference_->space, body_.tangent_form(),
+                                                  addition(), loads.constraints, n_gauss_points_);
+        std::vector<std::string> names;
+        MatrixX modes = rigid_body_modes(*reference_->space, problem_, names);
+        loads.constraints.to_frames(modes);
+        system_->prepare(modes);
+    } else {
+        assemble_matrix(loads);
+    }
     const SparseMatrix transposed = follower_.stiffness.transpose();
-    add_symmetric(matrix_, SparseMatrix(0.5 * (follower_.stiffness + transposed)));
-    rotate_to_frames(matrix_, loads.constraints);
     skew_ = SparseMatrix(0.5 * (follower_.stiffness - transposed));
     coupling_ = body_.coupling();
     if (!loads.constraints.frames.empty()) {
@@ -160,8 +175,28 @@ void Equilibrium<d>::linearize(const LoadState<d>& loads) {
 }
 
 template <int d>
+SparseMatrix Equilibrium<d>::addition() const {
+    const SparseMatrix transposed = follower_.stiffness.transpose();
+    SparseMatrix result = 0.5 * (follower_.stiffness + transposed);
+    if (foundations_.nonZeros() > 0) {
+        result += foundations_;
+    }
+    return result;
+}
+
+template <int d>
+void Equilibrium<d>::assemble_matrix(const LoadState<d>& loads) {
+    if (matrix_.n_rows == 0) {
+        matrix_ = make_pattern(*reference_->space, d);
+    }
+    body_.tangent(matrix_);
+    add_symmetric(matrix_, addition());
+    rotate_to_frames(matrix_, loads.constraints);
+}
+
+template <int d>
 MatrixX Equilibrium<d>::apply(const MatrixX& x) const {
-    MatrixX result = matrix_ * x;
+    MatrixX result = system_ ? *system_ * x : matrix_ * x;
     result += skew_ * x;
     if (coupling_) {
         Eigen::SimplicialLDLT<SparseMatrix> compliance(coupling_->compliance);
@@ -212,6 +247,10 @@ MatrixX Equilibrium<d>::solve(const LoadState<d>& loads, const MatrixX& b) {
     MatrixX x;
     if (skew_.nonZeros() == 0 && !coupling_) {
         try {
+            if (system_) {
+                static_cast<void>(system_->solve(b, solver_options_, x));
+                return x;
+            }
             // Ordered once: the pattern stays.
             solver_->factorize({matrix_, is_fixed, {}, reference_->space.get()});
             static_cast<void>(solver_->solve(b, x));
@@ -219,6 +258,10 @@ MatrixX Equilibrium<d>::solve(const LoadState<d>& loads, const MatrixX& b) {
         } catch (const NotPositiveDefinite& error) {
             log::detail("the tangent is indefinite, LU instead of Cholesky");
         }
+    }
+    if (system_) {
+        log::warn("the tangent is not symmetric positive definite: its matrix is formed for LU");
+        assemble_matrix(loads);
     }
     SolverOptions options = solver_options_;
     options.name = "umfpack";

@@ -6,6 +6,7 @@
 #include "iga/assembly/finite_strain.h"
 #include "iga/assembly/follower_pressure.h"
 #include "iga/linalg/sparse_solver.h"
+#include "iga/solve/matrix_free_system.h"
 
 namespace couture::iga {
 
@@ -28,15 +29,16 @@ class Equilibrium {
   public:
     /// @param problem  must outlive this
     /// @param end  time at which loads that do not name t have the value that they are given
-    /// @throws InputError, TopologyError  as `solve_linear_static`
+    /// @throws InputError, TopologyError  as `solve_linear_static`; for matrix_free where the
+    ///                                    volumetric part is projected
     Equilibrium(ReferencePtr<d> reference, const Problem& problem, double end,
                 std::optional<int> n_gauss_points, Volumetric volumetric,
                 const SolverOptions& solver);
 
     [[nodiscard]] LoadState<d> loads_at(double t) const;
 
-    /// Moves the body to `unknowns` (one column) under these loads; false where it is folded there, or
-    /// forces are not finite: they have no meaning then.
+    /// Moves the body to `unknowns` (one column) under these loads; false where it is folded there,
+    /// or forces are not finite: they have no meaning then.
     [[nodiscard]] bool move_to(const LoadState<d>& loads, const MatrixX& unknowns);
     [[nodiscard]] const SmallestVolume<d>& smallest_volume() const { return smallest_; }
 
@@ -56,13 +58,17 @@ class Equilibrium {
     /// The derivative times columns.
     [[nodiscard]] MatrixX apply(const MatrixX& x) const;
     /// Solves for columns, zero at fixed unknowns. Cholesky while the tangent is symmetric and
-    /// positive definite, LU where it is not.
+    /// positive definite, LU where it is not; or conjugate gradients without the matrix.
     /// @throws SolverError  if the tangent is singular
     [[nodiscard]] MatrixX solve(const LoadState<d>& loads, const MatrixX& b);
     /// Largest entry of the derivative.
     [[nodiscard]] double stiffness_scale() const;
 
   private:
+    [[nodiscard]] bool is_matrix_free() const { return solver_options_.name == "matrix_free"; }
+    /// What is added to the body's tangent: foundations, symmetric part of follower pressures.
+    [[nodiscard]] SparseMatrix addition() const;
+    void assemble_matrix(const LoadState<d>& loads);
     [[nodiscard]] BlockMatrix extended_matrix() const;
 
     ReferencePtr<d> reference_;
@@ -82,7 +88,9 @@ class Equilibrium {
     VectorX external_;
     FollowerPressure follower_;
 
+    /// Without rows while the tangent is applied without a matrix.
     BlockMatrix matrix_;
+    std::unique_ptr<MatrixFreeSystem<d>> system_;
     /// What a follower pressure on an open rim adds: over the unknowns, antisymmetric.
     SparseMatrix skew_;
     std::optional<VolumetricCoupling> coupling_;

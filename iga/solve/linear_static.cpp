@@ -8,6 +8,7 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/solve/matrix_free_system.h"
 #include "iga/solve/static_system.h"
 
 namespace couture::iga {
@@ -24,6 +25,90 @@ auto timed(std::vector<Phase>& phases, const std::string& name, const Body& body
     log::info(fmt::format("{:<14} {:8.2f} s", name, phases.back().seconds));
     return result;
 }
+
+/// The equations of all load cases, with a matrix or without.
+template <int d>
+class Equations {
+  public:
+    Equations(const Space<d>& space, const Problem& problem, const Constraints<d>& constraints,
+              const SparseMatrix& foundations, const LinearStaticOptions& options)
+        : space_(space), problem_(problem), constraints_(constraints), options_(options) {
+        const BilinearForm<d> form = stiffness_form<d>(problem, space.n_patches());
+        std::string note;
+        if (is_matrix_free(form.n_components, note)) {
+            note_ = note;
+            system_.emplace(space, form, foundations, constraints, options.n_gauss_points);
+            return;
+        }
+        matrix_ = assemble(space, form, options.n_gauss_points);
+        add_symmetric(*matrix_, foundations);
+        rotate_to_frames(*matrix_, constraints);
+    }
+
+    [[nodiscard]] MatrixX operator*(const MatrixX& u) const {
+        return matrix_ ? MatrixX(*matrix_ * u) : *system_ * u;
+    }
+
+    void factorize() {
+        std::vector<std::string> names;
+        MatrixX near_null_space = rigid_body_modes(space_, problem_, names);
+        constraints_.to_frames(near_null_space);
+        if (system_) {
+            system_->prepare(near_null_space);
+            return;
+        }
+        solver_ = options_.reused_solver;
+        if (solver_ == nullptr) {
+            own_solver_ = make_linear_solver(options_.solver);
+            solver_ = own_solver_.get();
+        }
+        solver_->factorize({*matrix_, constraints_.is_fixed, std::move(near_null_space), &space_});
+    }
+
+    [[nodiscard]] SolveReport solve(const MatrixX& b, MatrixX& u) {
+        if (!system_) {
+            return solver_->solve(b, u);
+        }
+        SolveReport report = system_->solve(b, options_.solver, u);
+        report.note = note_;
+        return report;
+    }
+
+  private:
+    /// @param note  filled with the reason, if it is not the user's wish
+    [[nodiscard]] bool is_matrix_free(int block_size, std::string& note) const {
+        if (options_.reused_solver != nullptr) {
+            return false;
+        }
+        if (options_.solver.name == "matrix_free") {
+            return true;
+        }
+        // The pattern's rows are kept once more while it is made.
+        constexpr double share = 0.75;
+        const std::size_t needed = matrix_memory(space_, block_size);
+        const std::size_t limit = options_.solver.memory_limit > 0
+                                      ? std::min(options_.solver.memory_limit, available_memory())
+                                      : available_memory();
+        if (options_.solver.name != "auto" || static_cast<double>(needed) < share * limit) {
+            return false;
+        }
+        constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+        note = fmt::format(
+            "matrix_free: the matrix would take {:.1f} GiB of the {:.1f} GiB that it may",
+            needed / gibibyte, limit / gibibyte);
+        return true;
+    }
+
+    const Space<d>& space_;
+    const Problem& problem_;
+    const Constraints<d>& constraints_;
+    const LinearStaticOptions& options_;
+    std::optional<BlockMatrix> matrix_;
+    std::unique_ptr<LinearSolver> own_solver_;
+    LinearSolver* solver_ = nullptr;
+    std::optional<MatrixFreeSystem<d>> system_;
+    std::string note_;
+};
 
 void require_finite(const MatrixX& u) {
     if (!u.allFinite()) {
@@ -50,20 +135,16 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
         result.n_elements += n;
     }
 
-    const BilinearForm<d> form = stiffness_form<d>(problem, space->n_patches());
     const SparseMatrix foundations = assemble_foundations(*space, problem, options.n_gauss_points);
     const Constraints<d> constraints = make_constraints(*space, problem, cases);
     require_held(*space, problem, constraints, foundations);
 
     std::vector<MatrixX> loads;
-    BlockMatrix K = timed(result.phases, "assembly", [&] {
+    const auto equations = timed(result.phases, "assembly", [&] {
         for (const std::string& name : cases) {
             loads.push_back(assemble_loads(*space, problem, name, options.n_gauss_points));
         }
-        BlockMatrix matrix = assemble(*space, form, options.n_gauss_points);
-        add_symmetric(matrix, foundations);
-        rotate_to_frames(matrix, constraints);
-        return matrix;
+        return std::make_unique<Equations<d>>(*space, problem, constraints, foundations, options);
     });
 
     MatrixX f(result.n_unknowns, n_cases);
@@ -74,25 +155,17 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
         throw InputError("a load is not finite; check its value or expression over the whole set");
     }
     constraints.to_frames(f);
-    const MatrixX b = f - K * constraints.values;
-
-    const std::unique_ptr<LinearSolver> own_solver =
-        options.reused_solver == nullptr ? make_linear_solver(options.solver) : nullptr;
-    LinearSolver* solver = own_solver ? own_solver.get() : options.reused_solver;
-    std::vector<std::string> mode_names;
-    LinearSystem system{K, constraints.is_fixed, rigid_body_modes(*space, problem, mode_names),
-                        space.get()};
-    constraints.to_frames(system.near_null_space);
+    const MatrixX b = f - *equations * constraints.values;
     timed(result.phases, "factorization", [&] {
-        solver->factorize(system);
+        equations->factorize();
         return 0;
     });
     MatrixX u;
-    result.solver = timed(result.phases, "solution", [&] { return solver->solve(b, u); });
+    result.solver = timed(result.phases, "solution", [&] { return equations->solve(b, u); });
     u += constraints.values;
     require_finite(u);
 
-    const MatrixX Ku = K * u;
+    const MatrixX Ku = *equations * u;
     for (Eigen::Index c = 0; c < n_cases; ++c) {
         CaseResult<d> one;
         one.name = cases[c];

@@ -470,25 +470,27 @@ void minimise(CellEnergy& energy, const SurfaceSlide& slide, const NodeRelocatio
     }
 }
 
-/// Moves the points inside each quad by what moved those of its border, blended as in a Coons
-/// patch.
+/// Moves the points of cells along curves by what moved those of the curve, less and less towards
+/// the cell's opposite edge.
 ///
-/// @param moved  the same points with the borders where they belong
-void follow_borders(const SampleGrid& grid, const MatrixX& moved, MatrixX& points) {
+/// @param n      parts of each cell
+/// @param moved  the same points where they belong
+void follow_curves(const SurfaceSlide& slide, const SampleGrid& grid, int n, const MatrixX& moved,
+                   MatrixX& points) {
     for (std::size_t q = 0; q < grid.quads.size(); ++q) {
         const auto [n_s, n_t] = grid.sizes[q];
-        const auto move = [&, width = n_s + 1](int i, int j) {
+        // What a point of the border does to one so many parts of cells away.
+        const auto follow = [&, width = n_s + 1](int i, int j, int distance) {
             const int point = grid.quads[q][j * width + i];
-            return Vector3(moved.col(point) - points.col(point));
+            if (slide.n_directions(point) != 1 || distance >= n) return Vector3(Vector3::Zero());
+            return Vector3((1.0 - static_cast<double>(distance) / n) *
+                           (moved.col(point) - points.col(point)));
         };
         for (int j = 1; j < n_t; ++j) {
             for (int i = 1; i < n_s; ++i) {
-                const double x = static_cast<double>(i) / n_s;
-                const double y = static_cast<double>(j) / n_t;
                 points.col(grid.quads[q][j * (n_s + 1) + i]) +=
-                    (1.0 - y) * move(i, 0) + y * move(i, n_t) + (1.0 - x) * move(0, j) +
-                    x * move(n_s, j) - (1.0 - y) * ((1.0 - x) * move(0, 0) + x * move(n_s, 0)) -
-                    y * ((1.0 - x) * move(0, n_t) + x * move(n_s, n_t));
+                    follow(i, 0, j) + follow(i, n_t, n_t - j) + follow(0, j, i) +
+                    follow(n_s, j, n_s - i);
             }
         }
     }
@@ -557,7 +559,7 @@ LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embe
         }
     }
     const SurfaceSlide slide(mesh, embedding, grid);
-    follow_borders(grid, slide.placed(points).points, points);
+    follow_curves(slide, grid, n, slide.placed(points).points, points);
     return to_samples(embedding, std::move(cells), grid, slide.placed(points).points);
 }
 

@@ -56,9 +56,9 @@ struct RelocatedSamples {
                                               const LayoutSamples& samples,
                                               const NodeRelocationOptions& options = {});
 
-/// The grid with each cell divided into n x n: bilinear, put back onto the surface. Borders of
-/// quads go first; what that moved them by moves the points inside, too, blended: so these stay on
-/// their side of a sharp edge that bends within a cell.
+/// The grid with each cell divided into n x n: bilinear, put back onto the surface. Feature
+/// and boundary arcs go first; what that moved them by moves the points of the cells beside them,
+/// too, less and less: so these stay on their side of a sharp edge that bends within a cell.
 ///
 /// @throws InputError  for less than one part
 [[nodiscard]] LayoutSamples refine_samples(const SurfaceMesh& mesh, const EmbeddedLayout& embedding,

@@ -173,6 +173,7 @@ RelocatedSamples relocate(const SolidMesh& solid, const std::vector<double>& cel
     relocation.cell_lengths = cell_lengths_of_arcs(solid, cell_lengths);
     relocation.max_iterations = options.max_relocations;
     relocation.area_part = solid.cuboids.record.area_part;
+    relocation.tolerance = options.node_tolerance;
     RelocatedSamples relocated = relocate_nodes(mesh, surface, *solid.mapped_quads, relocation);
     for (int n = 2; n <= 4 && relocated.report.n_inverted > 0; n *= 2) {
         const RelocatedSamples small = relocate_nodes(
@@ -291,6 +292,31 @@ bool add_elements(SolidMesh& solid, const LayoutCells& cells, const SolidMeshOpt
     return is_any;
 }
 
+bool is_poor(const LayoutVolume& volume) {
+    constexpr double poor = 0.2;
+    return volume.report.parameterization.validity != iga::Validity::valid ||
+           volume.report.quality.min_scaled_jacobian < poor;
+}
+
+// Moves the nodes of a poor volume on, each time by a tolerance ten times smaller, and keeps the
+// best: badly shaped elements beside blunt edges depend on where exactly the nodes stopped.
+void improve_volume(SolidMesh& solid, const LayoutMapOptions& map, SolidMeshOptions options,
+                    const std::function<void(std::string_view)>& say) {
+    constexpr int max_tries = 2;
+    const auto rank = [](const LayoutVolume& volume) {
+        return std::pair(volume.report.parameterization.validity == iga::Validity::valid,
+                         volume.report.quality.min_scaled_jacobian);
+    };
+    SolidMesh other = solid;
+    for (int i = 0; i < max_tries && is_poor(*solid.volume); ++i) {
+        say("moving nodes on, for better elements");
+        options.node_tolerance *= 0.1;
+        make_quads(other, map.cell_lengths, options);
+        other.volume = fit_volume(other, options);
+        if (rank(*other.volume) > rank(*solid.volume)) solid = other;
+    }
+}
+
 }  // namespace
 
 SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& options) {
@@ -359,6 +385,8 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
     }
     say("fitting splines and filling the volume");
     solid.volume = fit_volume(solid, options);
+    if (chooses_elements && is_poor(*solid.volume))
+        improve_volume(solid, map_options, options, say);
     solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
     if (options.last == SolidStage::volume) return solid;
 

@@ -22,6 +22,9 @@ namespace couture::meshing {
 /// The stages from cuboids to a volume and its hexahedra, in order.
 enum class SolidStage { layout, field, map, quads, surfaces, volume, hexes };
 
+/// Members' nodes then depend smoothly on the parameters, also where their energy is flat.
+constexpr double family_node_tolerance = 1e-8;
+
 struct SolidMeshOptions {
     /// The last stage that is run.
     SolidStage last = SolidStage::volume;
@@ -44,6 +47,8 @@ struct SolidMeshOptions {
     double alignment = 0.0;
     /// Steps of moving nodes at most; 0: quads stay those of the map.
     int max_relocations = NodeRelocationOptions{}.max_iterations;
+    /// Nodes have moved when a step lowers their energy by less than this part of it.
+    double node_tolerance = NodeRelocationOptions{}.tolerance;
     /// Points of the surface for each element and direction that splines are fitted to; at least 2.
     int samples_per_element = 4;
     /// Its numbers of elements are not read.
