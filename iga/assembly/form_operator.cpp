@@ -6,6 +6,7 @@
 #include "iga/assembly/assembler.h"
 #include "iga/core/error.h"
 #include "iga/core/parallel.h"
+#include "iga/core/timer.h"
 
 namespace couture::iga {
 
@@ -122,8 +123,30 @@ FormOperator<d>::FormOperator(const Space<d>& space, BilinearForm<d> form,
             n_slots_ = d + 1;
         }
     }
+    require_memory(n_gauss_points);
     for (int p = 0; p < space.n_patches(); ++p) {
         set_up(p, n_gauss_points);
+    }
+}
+
+template <int d>
+void FormOperator<d>::require_memory(std::optional<int> n_gauss_points) const {
+    double n_bytes = 0.0;
+    for (int p = 0; p < space_->n_patches() && form_.is_constant(); ++p) {
+        const TensorSpace<d>& tensor = space_->tensor(p);
+        double n_points = 1.0;
+        for (int k = 0; k < d; ++k) {
+            n_points *= static_cast<double>(gauss_points<d>(tensor, n_gauss_points)[k]) *
+                        tensor.knots[k].n_elements();
+        }
+        n_bytes += sizeof(double) * n_points * record_size();
+    }
+    constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+    if (n_bytes > static_cast<double>(available_memory())) {
+        throw SolverError(
+            "matrix_free: the geometry at the quadrature points of {} unknowns takes {:.1f} GiB, "
+            "{:.1f} GiB are free; use fewer elements or gauss_points",
+            n_unknowns(), n_bytes / gibibyte, available_memory() / gibibyte);
     }
 }
 

@@ -23,6 +23,7 @@ class FormOperator {
     /// @param space  must outlive this
     /// @param n_gauss_points  per direction and element; nothing: degree + 1 of the space
     /// @throws GeometryError  for a folded patch: patch, place, value
+    /// @throws SolverError    if it would not fit into the machine's memory
     FormOperator(const Space<d>& space, BilinearForm<d> form,
                  std::optional<int> n_gauss_points = {});
     FormOperator(FormOperator&&) noexcept;
@@ -53,6 +54,7 @@ class FormOperator {
     /// and the coefficients there if they vary.
     struct PlaneData;
 
+    void require_memory(std::optional<int> n_gauss_points) const;
     void set_up(int patch, std::optional<int> n_gauss_points);
     void fill_plane(const PatchData& patch, int i_plane, PlaneData& plane) const;
     /// Numbers per quadrature point: the transformation and the weight.

@@ -7,21 +7,27 @@
 
 namespace couture {
 
+/// Memory aligned to cache lines; large pieces ask for large pages, whose first touch costs a
+/// fraction of that of small ones.
+///
+/// @throws std::bad_alloc  if there is none
+[[nodiscard]] void* allocate_aligned(std::size_t n_bytes);
+void deallocate_aligned(void* memory, std::size_t n_bytes) noexcept;
+
 /// Allocator that leaves numbers uninitialised, so that the threads that fill an array are the
 /// first to touch its pages, and aligns to cache lines, so that it can be read as vectors.
 template <typename T>
 struct UninitializedAllocator {
     using value_type = T;
-    static constexpr std::align_val_t alignment{64};
 
     UninitializedAllocator() = default;
     template <typename U>
     UninitializedAllocator(const UninitializedAllocator<U>&) noexcept {}
 
     [[nodiscard]] T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new(n * sizeof(T), alignment));
+        return static_cast<T*>(allocate_aligned(n * sizeof(T)));
     }
-    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+    void deallocate(T* p, std::size_t n) noexcept { deallocate_aligned(p, n * sizeof(T)); }
 
     template <typename U, typename... Args>
     void construct(U* p, Args&&... args) {

@@ -32,17 +32,17 @@ class Equations {
   public:
     Equations(const Space<d>& space, const Problem& problem, const Constraints<d>& constraints,
               const SparseMatrix& foundations, const LinearStaticOptions& options)
-        : space_(space), problem_(problem), constraints_(constraints), options_(options) {
-        const BilinearForm<d> form = stiffness_form<d>(problem, space.n_patches());
-        std::string note;
-        if (is_matrix_free(form.n_components, note)) {
-            note_ = note;
-            system_.emplace(space, form, foundations, constraints, options.n_gauss_points);
-            return;
+        : space_(space),
+          problem_(problem),
+          constraints_(constraints),
+          foundations_(foundations),
+          options_(options) {
+        if (is_matrix_free()) {
+            system_.emplace(space, stiffness_form<d>(problem, space.n_patches()), foundations,
+                            constraints, options.n_gauss_points);
+        } else {
+            form_matrix();
         }
-        matrix_ = assemble(space, form, options.n_gauss_points);
-        add_symmetric(*matrix_, foundations);
-        rotate_to_frames(*matrix_, constraints);
     }
 
     [[nodiscard]] MatrixX operator*(const MatrixX& u) const {
@@ -54,8 +54,12 @@ class Equations {
         MatrixX near_null_space = rigid_body_modes(space_, problem_, names);
         constraints_.to_frames(near_null_space);
         if (system_) {
-            system_->prepare(near_null_space);
-            return;
+            try {
+                system_->prepare(near_null_space);
+                return;
+            } catch (const SolverError& error) {
+                go_on_with_matrix(error);
+            }
         }
         solver_ = options_.reused_solver;
         if (solver_ == nullptr) {
@@ -69,31 +73,73 @@ class Equations {
         if (!system_) {
             return solver_->solve(b, u);
         }
-        SolveReport report = system_->solve(b, options_.solver, u);
-        report.note = note_;
+        SolverOptions solver = options_.solver;
+        if (is_chosen_) {
+            solver.max_iterations = std::min(solver.max_iterations, max_chosen_iterations);
+        }
+        try {
+            SolveReport report = system_->solve(b, solver, u);
+            report.note = note_;
+            return report;
+        } catch (const SolverError& error) {
+            go_on_with_matrix(error);
+        }
+        factorize();
+        SolveReport report = solver_->solve(b, u);
+        report.note = report.note.empty() ? note_ : note_ + "; " + report.note;
         return report;
     }
 
   private:
-    /// @param note  filled with the reason, if it is not the user's wish
-    [[nodiscard]] bool is_matrix_free(int block_size, std::string& note) const {
-        if (options_.reused_solver != nullptr) {
+    void form_matrix() {
+        matrix_ = assemble(space_, stiffness_form<d>(problem_, space_.n_patches()),
+                           options_.n_gauss_points);
+        add_symmetric(*matrix_, foundations_);
+        rotate_to_frames(*matrix_, constraints_);
+    }
+
+    /// Where matrix_free was chosen by size; else what it failed of is thrown on.
+    void go_on_with_matrix(const SolverError& error) {
+        if (!is_chosen_) {
+            throw;
+        }
+        log::warn(fmt::format("{}; going on with the matrix", error.what()));
+        note_ += fmt::format("; fell back to the matrix: {}", error.what());
+        system_.reset();
+        form_matrix();
+    }
+
+    /// Says why in `note_`, if it is not the user's wish.
+    [[nodiscard]] bool is_matrix_free() {
+        if (options_.solver.name == "matrix_free") {
+            return true;
+        }
+        if (options_.reused_solver != nullptr || options_.solver.name != "auto") {
             return false;
         }
-        if (options_.solver.name == "matrix_free") {
+        // Where a factorization takes longer than hundreds of products without a matrix, for one
+        // load case (see couture bench --only products, solution).
+        constexpr int least_unknowns = 60'000;
+        const int nc = n_components<d>(problem_);
+        const int n_unknowns = space_.n_dofs() * nc;
+        const auto n_cases = static_cast<int>(problem_.load_cases().size());
+        if (d == 3 && n_unknowns / n_cases >= least_unknowns) {
+            note_ = fmt::format("matrix_free: {} unknowns for {} load case{}", n_unknowns, n_cases,
+                                n_cases > 1 ? "s" : "");
+            is_chosen_ = true;
             return true;
         }
         // The pattern's rows are kept once more while it is made.
         constexpr double share = 0.75;
-        const std::size_t needed = matrix_memory(space_, block_size);
+        const std::size_t needed = matrix_memory(space_, nc);
         const std::size_t limit = options_.solver.memory_limit > 0
                                       ? std::min(options_.solver.memory_limit, available_memory())
                                       : available_memory();
-        if (options_.solver.name != "auto" || static_cast<double>(needed) < share * limit) {
+        if (static_cast<double>(needed) < share * limit) {
             return false;
         }
         constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
-        note = fmt::format(
+        note_ = fmt::format(
             "matrix_free: the matrix would take {:.1f} GiB of the {:.1f} GiB that it may",
             needed / gibibyte, limit / gibibyte);
         return true;
@@ -102,12 +148,16 @@ class Equations {
     const Space<d>& space_;
     const Problem& problem_;
     const Constraints<d>& constraints_;
+    const SparseMatrix& foundations_;
     const LinearStaticOptions& options_;
     std::optional<BlockMatrix> matrix_;
     std::unique_ptr<LinearSolver> own_solver_;
     LinearSolver* solver_ = nullptr;
     std::optional<MatrixFreeSystem<d>> system_;
     std::string note_;
+    /// By size, not by the user and not for want of memory: there is a way back.
+    bool is_chosen_ = false;
+    static constexpr int max_chosen_iterations = 500;
 };
 
 void require_finite(const MatrixX& u) {
