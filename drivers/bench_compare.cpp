@@ -56,8 +56,8 @@ Json parse(const std::string& text, const std::string& path) {
 
 std::string compare_benchmarks(const std::string& json, const std::string& earlier,
                                const std::string& path) {
-    const Json now = parse(json, "bench");
     const Json before = parse(earlier, path);
+    const Json now = parse(json, "this run");
     std::string text = fmt::format("\nSeconds beside {}: ratios below 1 are faster now\n", path);
     double sum_of_logs = 0.0;
     int n_times = 0;

@@ -356,6 +356,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
     check_gauss_bonnet(stages.mesh);
     if (last < MeshStage::loops) return;
     meshing::SolidMeshOptions solid = deck.solid;
+    if (!deck.like.empty()) solid.node_tolerance = meshing::family_node_tolerance;
     solid.progress = [&](std::string_view what) {
         log::info(fmt::format("mesh: {} ({:.0f} s)", what, timer.seconds()));
     };

@@ -181,6 +181,32 @@ TEST_CASE("couture check: folds that no quadrature point sees are warned of", "[
     CHECK(result.errors.find("patch 0 is folded: det J = ") != std::string::npos);
 }
 
+TEST_CASE("couture bench: sections by themselves, beside an earlier run", "[drivers]") {
+    const TemporaryFolder folder;
+    const auto first = run_couture("bench --quick --only products --save a.json", folder.path());
+    REQUIRE(first.exit_code == 0);
+    const auto json = nlohmann::json::parse(io::read_text(folder.path() / "a.json"));
+    CHECK(json.at("assembly").empty());
+    REQUIRE(json.at("products").size() >= 2);
+    for (const auto& row : json.at("products")) {
+        CHECK(row.at("matrix_seconds") > 0.0);
+        CHECK(row.at("operator_seconds") > 0.0);
+        CHECK(row.at("operator_bytes") > 0.0);
+    }
+    const auto second =
+        run_couture("bench --quick --only products --compare a.json", folder.path());
+    REQUIRE(second.exit_code == 0);
+    CHECK_THAT(second.output, Catch::Contains("geometric mean of the ratios"));
+    CHECK_THAT(second.output, Catch::Contains("degree 2, elements_per_direction 8, threads 1"));
+
+    io::write_text(folder.path() / "b.json", "{\"a\": 1}");
+    const auto wrong = run_couture("bench --quick --compare b.json", folder.path());
+    CHECK(wrong.exit_code != 0);
+    CHECK_THAT(wrong.errors, Catch::Contains("b.json: not the numbers of a benchmark"));
+    const auto section = run_couture("bench --only prod", folder.path());
+    CHECK(section.exit_code != 0);
+}
+
 TEST_CASE("couture bench: every line has a time and a share of the machine", "[drivers]") {
     const TemporaryFolder folder;
     const auto result = run_couture("bench --quick --json", folder.path());

@@ -238,7 +238,7 @@ TEST_CASE("LinearSolver: wrong input is named", "[linalg]") {
 TEST_CASE("make_linear_solver: an unknown name lists those there are", "[linalg]") {
     CHECK_THROWS_WITH(make_linear_solver(options_of("mumps")),
                       "linear solver: unknown name 'mumps'; there are auto, cholmod, "
-                      "fast_diagonalization, petsc, umfpack");
+                      "fast_diagonalization, matrix_free, petsc, umfpack");
     CHECK(linear_solver_names().front() == "auto");
 }
 

@@ -85,6 +85,31 @@ TEST_CASE("follow_loads: a tube inflated by follower pressure", "[solve]") {
     CHECK(u.value(0, Vector2(1.0, 1.0)).norm() == Approx(0.1486155550).epsilon(1e-5));
 }
 
+TEST_CASE("follow_loads: without a matrix the same path", "[solve]") {
+    // Held at both ends, so that the stretch is not uniform.
+    const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 2, {3, 3, 2});
+    Problem problem = rubber(Kinematics::solid);
+    problem.supports = {make_support("side_0", 0.0, 0.0, 0.0),
+                        make_support("side_1", 0.4, 0.1, 0.0)};
+    SteppingOptions options;
+    SteppingReport report;
+    const auto with_matrix = run<3>(space, problem, options, report);
+    REQUIRE(report.finished);
+    options.newton.solver.name = "matrix_free";
+    const auto without = run<3>(space, problem, options, report);
+    REQUIRE(report.finished);
+    REQUIRE(with_matrix.size() == without.size());
+    for (std::size_t i = 0; i < without.size(); ++i) {
+        CHECK(without[i].newton.iterations == with_matrix[i].newton.iterations);
+    }
+    const MatrixX& u = with_matrix.back().state.displacement;
+    CHECK((without.back().state.displacement - u).norm() < 1e-6 * u.norm());
+
+    options.volumetric = Volumetric::projected;
+    CHECK_THROWS_WITH(run<3>(space, problem, options, report),
+                      Contains("set volumetric = \"full\""));
+}
+
 TEST_CASE("follow_loads: a path without equilibrium is cut down and given up", "[solve]") {
     // The moving face would pass through the held one.
     const SpacePtr<3> space = space_of<3>(make_box<3>(Vector3(1.0, 1.0, 1.0)), 1, {1, 1, 1});
