@@ -39,7 +39,10 @@ class FormOperator {
     [[nodiscard]] VectorX operator*(const VectorX& u) const;
 
     /// Diagonal blocks of the matrix: n_unknowns x n_components, block i in rows n_components * i.
-    [[nodiscard]] MatrixX diagonal_blocks() const;
+    /// Functions that a collapsed side joins count by themselves.
+    ///
+    /// @param is_diagonal  only the blocks' diagonals, the rest is zero: a third of the work
+    [[nodiscard]] MatrixX diagonal_blocks(bool is_diagonal = false) const;
 
     /// For each patch and component the means, over the unit box, of what the form becomes there;
     /// see `patch_coefficients` of a matrix.

@@ -61,7 +61,7 @@ MatrixX MatrixFreeSystem<d>::operator*(const MatrixX& u) const {
 template <int d>
 VectorX MatrixFreeSystem<d>::diagonal() const {
     const int nc = form_.n_components();
-    MatrixX blocks = form_.diagonal_blocks();
+    MatrixX blocks = form_.diagonal_blocks(constraints_.frames.empty());
     for (int column = 0; column < addition_.outerSize(); ++column) {
         for (SparseMatrix::InnerIterator it(addition_, column); it; ++it) {
             if (it.row() / nc == column / nc) {

@@ -44,9 +44,7 @@ Space<d> make_space(std::vector<Patch<d>> patches, int degree, int n_elements) {
     return {std::move(part), std::move(spaces)};
 }
 
-Volume annulus() {
-    return make_extrusion(make_quarter_annulus(1.0, 2.0), Vector3(0.0, 0.0, 1.0));
-}
+Volume annulus() { return make_extrusion(make_quarter_annulus(1.0, 2.0), Vector3(0.0, 0.0, 1.0)); }
 
 template <int d>
 BilinearForm<d> elastic_form(Kinematics kinematics, int n_patches) {
@@ -78,6 +76,11 @@ void check_against_matrix(const Space<d>& space, const BilinearForm<d>& form) {
         }
     }
     CHECK(error < 100 * rounding * blocks.cwiseAbs().maxCoeff());
+    const MatrixX diagonals = by_form.diagonal_blocks(true);
+    for (int i = 0; i < blocks.rows(); ++i) {
+        CHECK(diagonals(i, i % nc) == Approx(blocks(i, i % nc)).epsilon(1e-12));
+        CHECK(diagonals.row(i).cwiseAbs().sum() == std::abs(diagonals(i, i % nc)));
+    }
 
     // Every third function.
     std::vector<int> functions;
@@ -182,8 +185,7 @@ TEST_CASE("FormOperator: mean coefficients are those of the matrix", "[assembly]
 }
 
 TEST_CASE("assemble_multilinear: energies of linear displacements are exact", "[assembly]") {
-    const Space<3> space = make_space<3>(
-        {make_box<3>(Vector3(1.0, 2.0, 1.5))}, 2, 6);
+    const Space<3> space = make_space<3>({make_box<3>(Vector3(1.0, 2.0, 1.5))}, 2, 6);
     const CoarseFunctions coarse = make_coarse_functions(space, 3, 100);
     const BlockMatrix matrix =
         assemble_multilinear(space, elastic_form<3>(Kinematics::solid, 1), coarse);
@@ -193,8 +195,7 @@ TEST_CASE("assemble_multilinear: energies of linear displacements are exact", "[
     // u_x = x: strain 1 along x.
     VectorX u = VectorX::Zero(matrix.n_unknowns());
     for (int node = 0; node < coarse.n_nodes; ++node) {
-        u[3 * coarse.nodes_of_patch[0][node]] =
-            static_cast<double>(node % (n[0] + 1)) / n[0];
+        u[3 * coarse.nodes_of_patch[0][node]] = static_cast<double>(node % (n[0] + 1)) / n[0];
     }
     const double volume = 3.0;
     CHECK(u.dot(VectorX(matrix * u)) ==
