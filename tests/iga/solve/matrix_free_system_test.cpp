@@ -63,22 +63,6 @@ Problem make_problem(Physics physics) {
     return problem;
 }
 
-Support hold(const std::string& on, const std::vector<int>& components) {
-    Support support;
-    support.on = on;
-    for (const int c : components) {
-        support.components[c] = constant(0.1);
-    }
-    return support;
-}
-
-Support slide(const std::string& on) {
-    Support support;
-    support.on = on;
-    support.normal = constant(0.0);
-    return support;
-}
-
 int compare(const SpacePtr<3>& space, const Problem& problem) {
     LinearStaticOptions options;
     options.solver.tolerance = tolerance;
@@ -102,23 +86,24 @@ TEST_CASE("matrix_free: the solutions of the assembled systems", "[solve]") {
     SECTION("a held side") {
         const int degree = GENERATE(1, 2, 3);
         Problem problem = make_problem(Physics::elasticity);
-        problem.supports = {hold("side_4", {0, 1, 2})};
+        problem.supports = {make_support("side_4", 0.1, 0.1, 0.1)};
         CHECK(compare(make_space(true, 0.0, degree, 5), problem) < 80);
     }
     SECTION("Poisson") {
         Problem problem = make_problem(Physics::poisson);
-        problem.supports = {hold("side_4", {0})};
+        problem.supports = {make_support("side_4", 0.1, {}, {})};
         CHECK(compare(make_space(true, 0.0, 2, 6), problem) < 30);
     }
     SECTION("two patches") {
         Problem problem = make_problem(Physics::elasticity);
-        problem.supports = {hold("side_0", {0, 1, 2})};
+        problem.supports = {make_support("side_0", 0.1, 0.1, 0.1)};
         CHECK(compare(make_space(false, 0.0, 2, 5), problem) < 80);
     }
     SECTION("symmetry planes along and across the axes") {
         for (const double angle : {0.0, 0.3}) {
             Problem problem = make_problem(Physics::elasticity);
-            problem.supports = {slide("side_2"), slide("side_3"), slide("side_4")};
+            problem.supports = {make_symmetry("side_2"), make_symmetry("side_3"),
+                                make_symmetry("side_4")};
             CHECK(compare(make_space(true, angle, 2, 5), problem) < 100);
         }
     }
@@ -136,7 +121,7 @@ TEST_CASE("matrix_free: the solutions of the assembled systems", "[solve]") {
 
 TEST_CASE("matrix_free: iterations hardly grow with elements", "[solve]") {
     Problem problem = make_problem(Physics::elasticity);
-    problem.supports = {hold("side_4", {0, 1, 2})};
+    problem.supports = {make_support("side_4", 0.1, 0.1, 0.1)};
     const int coarse = compare(make_space(true, 0.0, 2, 4), problem);
     const int fine = compare(make_space(true, 0.0, 2, 12), problem);
     CHECK(fine < 1.5 * coarse);
@@ -144,7 +129,7 @@ TEST_CASE("matrix_free: iterations hardly grow with elements", "[solve]") {
 
 TEST_CASE("auto: a matrix beyond the memory limit is not formed", "[solve]") {
     Problem problem = make_problem(Physics::elasticity);
-    problem.supports = {hold("side_4", {0, 1, 2})};
+    problem.supports = {make_support("side_4", 0.1, 0.1, 0.1)};
     const SpacePtr<3> space = make_space(true, 0.0, 2, 6);
     LinearStaticOptions options;
     const std::size_t needed = matrix_memory(*space, 3);
