@@ -123,6 +123,8 @@ struct ProblemSize {
     double n_functions = 0.0;
     /// Bytes of one triangle of the block matrix: every function meets (2 degree + 1)^d others.
     double matrix_memory = 0.0;
+    /// Of the same applied without it.
+    double operator_memory = 0.0;
 };
 
 template <int d>
@@ -134,6 +136,7 @@ ProblemSize estimate_size(const io::Deck& deck, const iga::MultiPatch<d>& geomet
     for (const iga::Patch<d>& patch : geometry.patches) {
         double functions = 1.0;
         double blocks = 1.0;
+        double points = 1.0;
         for (int k = 0; k < d; ++k) {
             const iga::KnotVector& knots = patch.knots(k);
             const bool is_exact = !deck.discretization.interpolates_geometry;
@@ -147,9 +150,15 @@ ProblemSize estimate_size(const io::Deck& deck, const iga::MultiPatch<d>& geomet
                                       is_exact ? static_cast<double>(knots.n_basis()) : 0.0);
             functions *= n;
             blocks *= n * std::min(2.0 * degree + 1.0, n);
+            points *= (n - degree) * deck.discretization.n_gauss_points.value_or(degree + 1);
         }
         size.n_functions += functions;
         size.matrix_memory += 0.5 * blocks * block_bytes;
+        // The map's derivatives at each point, and the vectors of conjugate gradients.
+        constexpr double vectors = 20.0;
+        const double numbers_per_point = patch.is_rational() ? (d + 1) * (d + 1) + 1 : d * d + 1;
+        size.operator_memory +=
+            8.0 * (points * numbers_per_point + vectors * n_components * functions);
     }
     return size;
 }
@@ -159,13 +168,18 @@ template <int d>
 void check_size(const io::Deck& deck, const iga::MultiPatch<d>& geometry, int n_components) {
     const ProblemSize size = estimate_size<d>(deck, geometry, n_components);
     const auto available = static_cast<double>(available_memory());
-    if (size.matrix_memory > available) {
+    const std::string& solver = deck.solver.name;
+    const bool is_matrix_free =
+        solver == "matrix_free" || (solver == "auto" && d == 3 && !deck.is_hyperelastic());
+    const double needed =
+        is_matrix_free ? std::min(size.matrix_memory, size.operator_memory) : size.matrix_memory;
+    if (needed > available) {
         throw SolverError(
-            "{}: the matrix of {:.3g} unknowns takes about {:.3g} GB, {:.3g} GB of memory are "
+            "{}: the {} of {:.3g} unknowns takes about {:.3g} GB, {:.3g} GB of memory are "
             "free; "
             "take fewer 'elements' or a lower 'degree' in [discretization]",
-            deck.path.string(), n_components * size.n_functions, size.matrix_memory / gigabyte,
-            available / gigabyte);
+            deck.path.string(), is_matrix_free ? "operator" : "matrix",
+            n_components * size.n_functions, needed / gigabyte, available / gigabyte);
     }
     if (n_components * size.n_functions > std::numeric_limits<int>::max()) {
         throw SolverError(
