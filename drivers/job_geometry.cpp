@@ -171,8 +171,11 @@ void check_size(const io::Deck& deck, const iga::MultiPatch<d>& geometry, int n_
     const std::string& solver = deck.solver.name;
     const bool is_matrix_free =
         solver == "matrix_free" || (solver == "auto" && d == 3 && !deck.is_hyperelastic());
-    const double needed =
-        is_matrix_free ? std::min(size.matrix_memory, size.operator_memory) : size.matrix_memory;
+    // "auto" goes by what fits.
+    double needed = is_matrix_free ? size.operator_memory : size.matrix_memory;
+    if (solver == "auto") {
+        needed = std::min(needed, size.matrix_memory);
+    }
     if (needed > available) {
         throw SolverError(
             "{}: the {} of {:.3g} unknowns takes about {:.3g} GB, {:.3g} GB of memory are "
