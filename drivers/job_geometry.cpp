@@ -32,9 +32,14 @@ void add_sets(const io::GeometrySource& source, iga::MultiPatch<d>& geometry) {
     }
 }
 
+}  // namespace
+
 template <int d>
-std::array<int, d> elements_per_direction(const io::Discretization& discretization) {
+std::optional<std::array<int, d>> elements_per_direction(const io::Discretization& discretization) {
     const std::vector<int>& given = discretization.elements;
+    if (given.empty()) {
+        return {};
+    }
     if (given.size() != 1 && given.size() != d) {
         throw InputError(
             "{}: 'elements' of [discretization] has {} numbers; the geometry has {} "
@@ -47,8 +52,6 @@ std::array<int, d> elements_per_direction(const io::Discretization& discretizati
     }
     return result;
 }
-
-}  // namespace
 
 template <int d>
 iga::PatchEntity<d> parse_entity(const std::string& text, int n_patches) {
@@ -198,10 +201,7 @@ template <int d>
 iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geometry) {
     const io::Discretization& discretization = deck.discretization;
     check_size<d>(deck, geometry, deck.problem.physics == iga::Physics::poisson ? 1 : d);
-    std::optional<std::array<int, d>> elements;
-    if (!discretization.elements.empty()) {
-        elements = elements_per_direction<d>(discretization);
-    }
+    const auto elements = elements_per_direction<d>(discretization);
     try {
         return std::make_shared<const iga::Space<d>>(
             discretization.interpolates_geometry
@@ -212,6 +212,8 @@ iga::SpacePtr<d> make_space(const io::Deck& deck, const iga::MultiPatch<d>& geom
     }
 }
 
+template std::optional<std::array<int, 2>> elements_per_direction<2>(const io::Discretization&);
+template std::optional<std::array<int, 3>> elements_per_direction<3>(const io::Discretization&);
 template iga::PatchEntity<2> parse_entity<2>(const std::string&, int);
 template iga::PatchEntity<3> parse_entity<3>(const std::string&, int);
 template iga::SpacePtr<2> make_space<2>(const io::Deck&, const iga::MultiPatch<2>&);

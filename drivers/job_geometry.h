@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "iga/topology/space.h"
 #include "io/deck.h"
 #include "io/spline_file.h"
@@ -21,6 +23,12 @@ void add_deck_sets(const io::GeometrySource& source, io::AnyMultiPatch& geometry
 /// @throws InputError  for anything else, and for a patch that does not exist
 template <int d>
 [[nodiscard]] iga::PatchEntity<d> parse_entity(const std::string& text, int n_patches);
+
+/// 'elements' of the deck's discretization in each direction, or nothing.
+/// @throws InputError  if they are neither one number nor one per direction
+template <int d>
+[[nodiscard]] std::optional<std::array<int, d>> elements_per_direction(
+    const io::Discretization& discretization);
 
 /// The space that the deck's discretization makes of the geometry.
 /// @throws InputError   naming where the discretization was written

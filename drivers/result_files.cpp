@@ -43,8 +43,6 @@ MatrixX principal_rows(const MatrixX& stresses) {
                     [](const Vector<6>& s) { return VectorX(iga::principal_stresses(s)); });
 }
 
-namespace {
-
 template <int d>
 std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
                                          const iga::CaseResult<d>& result, const MatrixX& stress) {
@@ -57,6 +55,8 @@ std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
             {"von_mises", von_mises_rows(stress), {}},
             {"principal", principal_rows(stress), {"1", "2", "3"}}};
 }
+
+namespace {
 
 template <int d>
 iga::FiniteStresses<d> finite_stresses(const io::Deck& deck, const iga::Field<d>& displacement) {
@@ -150,6 +150,10 @@ std::vector<fs::path> write_result_files(const io::Deck& deck, const iga::SpaceP
     return files;
 }
 
+template std::vector<io::PointArray> field_arrays(const iga::Problem&, const iga::CaseResult<2>&,
+                                                  const MatrixX&);
+template std::vector<io::PointArray> field_arrays(const iga::Problem&, const iga::CaseResult<3>&,
+                                                  const MatrixX&);
 template std::string provenance<2>(const io::Deck&, const iga::MultiPatch<2>&,
                                    const GeometryCertificate&);
 template std::string provenance<3>(const io::Deck&, const iga::MultiPatch<3>&,

@@ -6,6 +6,7 @@
 #include "drivers/deck_check.h"
 #include "iga/solve/linear_static.h"
 #include "io/deck.h"
+#include "io/vtk_writer.h"
 
 namespace couture::drivers {
 
@@ -34,6 +35,14 @@ template <int d>
 /// Von Mises stress and principal stresses of each row of stresses (n x 6).
 [[nodiscard]] MatrixX von_mises_rows(const MatrixX& stresses);
 [[nodiscard]] MatrixX principal_rows(const MatrixX& stresses);
+
+/// What result files show of a case: displacement, stresses and what follows from them.
+///
+/// @param stress  n_dofs x 6
+template <int d>
+[[nodiscard]] std::vector<io::PointArray> field_arrays(const iga::Problem& problem,
+                                                       const iga::CaseResult<d>& result,
+                                                       const MatrixX& stress);
 
 /// Deck text and hash, program version, signature and certificate, as JSON: what every result file
 /// carries.

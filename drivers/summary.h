@@ -68,6 +68,18 @@ struct SteppingSummary {
     [[nodiscard]] int n_remeshings() const;
 };
 
+/// How a run of several ranks was shared out.
+struct DistributionSummary {
+    /// One number per rank; unknowns: those that it owns.
+    std::vector<double> elements;
+    std::vector<double> unknowns;
+    /// Ranks that it exchanges with, and bytes that it sends in one product of matrix and vector.
+    std::vector<double> neighbours;
+    std::vector<double> bytes_sent;
+    /// Highest resident memory, bytes.
+    std::vector<double> peak_memory;
+};
+
 /// What a run is summed up to; see `schema.md`.
 struct Summary {
     std::string deck;
@@ -87,6 +99,8 @@ struct Summary {
     std::vector<Phase> phases;
     iga::SolveReport solver;
     std::vector<CaseSummary> cases;
+    /// Of several ranks.
+    std::optional<DistributionSummary> distribution;
     /// Of hyperelastic decks.
     std::optional<SteppingSummary> stepping;
     std::vector<ProbeResult> probes;

@@ -152,6 +152,14 @@ std::string to_json(const Summary& summary) {
                    {"probes", probes},
                    {"warnings", summary.warnings},
                    {"files", summary.files}};
+    if (summary.distribution) {
+        const DistributionSummary& ranks = *summary.distribution;
+        object["ranks"] = {{"elements", ranks.elements},
+                           {"unknowns", ranks.unknowns},
+                           {"neighbours", ranks.neighbours},
+                           {"bytes_sent", ranks.bytes_sent},
+                           {"peak_memory", ranks.peak_memory}};
+    }
     if (summary.stepping) {
         add_stepping(object, *summary.stepping);
     }

@@ -74,6 +74,20 @@ std::string stepping_lines(const SteppingSummary& stepping) {
     return text;
 }
 
+std::string distribution_lines(const DistributionSummary& ranks) {
+    const auto range = [](const std::vector<double>& values, double unit) {
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        return fmt::format("{:.4g} to {:.4g}", *least / unit, *most / unit);
+    };
+    constexpr double kilobyte = 1024.0;
+    return fmt::format(
+        "  ranks {}: elements {}, unknowns {}, neighbours {}, sent per product {} kB, peak memory "
+        "{} MB\n",
+        ranks.elements.size(), range(ranks.elements, 1.0), range(ranks.unknowns, 1.0),
+        range(ranks.neighbours, 1.0), range(ranks.bytes_sent, kilobyte),
+        range(ranks.peak_memory, megabyte));
+}
+
 }  // namespace
 
 int SteppingSummary::n_steps() const { return static_cast<int>(history.size()) - n_remeshings(); }
@@ -113,6 +127,9 @@ std::string to_table(const Summary& summary) {
                         summary.solver.iterations, summary.solver.residual);
     if (!summary.solver.note.empty()) {
         text += fmt::format("    {}\n", summary.solver.note);
+    }
+    if (summary.distribution) {
+        text += distribution_lines(*summary.distribution);
     }
     if (summary.stepping) {
         text += stepping_lines(*summary.stepping);

@@ -37,10 +37,6 @@ using iga::Space;
 
 namespace {
 
-constexpr const char* patch_array = "patch";
-constexpr const char* weights_array = "RationalWeights";
-constexpr const char* degrees_array = "HigherOrderDegrees";
-
 /// Points of one patch: a grid of n_elements * order + 1 nodes per direction, of which each cell
 /// takes order + 1. Nodes are Bezier control points (order: the degree) or samples (order 1).
 template <int d>
@@ -234,7 +230,7 @@ void check_point_arrays(std::span<const PointArray> arrays, Eigen::Index n_rows,
 template <int d>
 void check_input(const Space<d>& space, std::span<const PointArray> points,
                  std::span<const CellArray> cells, const VtuOptions& options) {
-    std::set<std::string> taken{patch_array, weights_array, degrees_array};
+    std::set<std::string> taken{vtu_patch_array, vtu_weights_array, vtu_degrees_array};
     check_point_arrays(points, space.n_dofs(), "function of the space", taken);
     for (const CellArray& array : cells) {
         check_name(array.name, taken);
@@ -325,18 +321,19 @@ void write_vtu(const std::filesystem::path& path, const Space<d>& space,
         fields.push_back(&add_array(*mesh->GetPointData(), array, n_nodes));
     }
     vtkNew<vtkDoubleArray> weights;
-    weights->SetName(weights_array);
+    weights->SetName(vtu_weights_array);
     weights->SetNumberOfTuples(n_nodes);
     weights->Fill(1.0);
     vtkNew<vtkDoubleArray> degrees;
-    degrees->SetName(degrees_array);
+    degrees->SetName(vtu_degrees_array);
     degrees->SetNumberOfComponents(3);
     vtkNew<vtkIntArray> patch_numbers;
-    patch_numbers->SetName(patch_array);
+    patch_numbers->SetName(vtu_patch_array);
     vtkNew<vtkCellArray> connectivity;
+    std::vector<int> patch_of_cell;
 
     vtkIdType first_node = 0;
-    bool is_rational = false;
+    bool is_rational = options.always_weights;
     for (int i = 0; i < space.n_patches(); ++i) {
         const NodeGrid<d>& grid = grids[i];
         const Patch<d>& patch = space.geometry().patches[i];
@@ -359,7 +356,9 @@ void write_vtu(const std::filesystem::path& path, const Space<d>& space,
 
         append_cells(grid, first_node, is_left_handed(patch), *connectivity);
         for (vtkIdType c = 0; c < grid.count_cells(); ++c) {
-            patch_numbers->InsertNextValue(i);
+            patch_of_cell.push_back(i);
+            patch_numbers->InsertNextValue(
+                options.patch_numbers.empty() ? i : options.patch_numbers[i]);
             degrees->InsertNextTuple3(grid.order[0], grid.order[1], d == 3 ? grid.order[d - 1] : 1);
         }
         first_node += grid.n_nodes();
@@ -371,7 +370,7 @@ void write_vtu(const std::filesystem::path& path, const Space<d>& space,
         PointArray per_cell{array.name, MatrixX(1, 1), {}};
         vtkDoubleArray& values = add_array(*mesh->GetCellData(), per_cell, n_cells);
         for (vtkIdType c = 0; c < n_cells; ++c) {
-            values.SetValue(c, array.values[patch_numbers->GetValue(c)]);
+            values.SetValue(c, array.values[patch_of_cell[c]]);
         }
     }
     if (!options.linear) {

@@ -9,6 +9,11 @@
 
 namespace couture::io {
 
+/// Names of the arrays that `write_vtu` adds.
+constexpr const char* vtu_patch_array = "patch";
+constexpr const char* vtu_weights_array = "RationalWeights";
+constexpr const char* vtu_degrees_array = "HigherOrderDegrees";
+
 /// Values given by coefficients on a space's functions, or one row per point.
 struct PointArray {
     std::string name;
@@ -31,6 +36,10 @@ struct VtuOptions {
     bool linear = false;
     /// Linear cells per element and direction, at least 1; only for `linear`.
     int samples = 2;
+    /// What the cell array "patch" holds for each patch; empty: its number.
+    std::vector<int> patch_numbers = {};
+    /// Write weights even where all are one: for a file that is part of one with weights.
+    bool always_weights = false;
     /// Where the result comes from; kept in the file as the field data string "provenance".
     std::string provenance;
 };

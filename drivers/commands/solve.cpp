@@ -2,17 +2,22 @@
 
 #include "drivers/commands/commands.h"
 #include "drivers/deck_check.h"
+#include "drivers/distributed_run.h"
 #include "drivers/job_geometry.h"
 #include "drivers/linear_run.h"
 #include "drivers/stepped_run.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/distributed/communicator.h"
 #include "io/atomic_file.h"
 #include "io/picture.h"
 
 namespace couture::drivers {
 
 int run_solve(const SolveOptions& options, const CommonOptions& common) {
+    if (iga::is_distributed_run()) {
+        return run_distributed(options, common);
+    }
     const Timer timer;
     io::Deck deck = io::read_deck(options.deck, options.overrides);
     deck.output.linear = deck.output.linear || options.linear;

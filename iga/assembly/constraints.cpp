@@ -381,9 +381,21 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
     return constraints;
 }
 
+namespace {
+
+template <int d>
+Vector3 middle_of(const MultiPatch<d>& geometry) {
+    Vector3 middle = Vector3::Zero();
+    const MatrixX box = geometry.bounding_box();
+    middle.head(box.rows()) = 0.5 * (box.col(0) + box.col(1));
+    return middle;
+}
+
+}  // namespace
+
 template <int d>
 MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
-                         std::vector<std::string>& names) {
+                         std::vector<std::string>& names, const std::optional<Vector3>& centre) {
     const int nc = n_components<d>(problem);
     if (problem.physics == Physics::poisson) {
         names = {"the constant"};
@@ -398,10 +410,7 @@ MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
         return modes;
     }
     MatrixX x = dof_positions(space);
-    const MatrixX box = space.geometry().bounding_box();
-    for (Eigen::Index k = 0; k < box.rows(); ++k) {
-        x.col(k).array() -= 0.5 * (box(k, 0) + box(k, 1));
-    }
+    x.rowwise() -= centre.value_or(middle_of(space.geometry())).transpose();
     const std::string axes = "xyz";
     for (int a = 0; a < d; ++a) {
         names.push_back(fmt::format("translation along {}", axes[a]));
@@ -559,15 +568,16 @@ void require_held(const Space<d>& space, const Problem& problem, const Constrain
         fmt::join(free, ", "));
 }
 
-#define COUTURE_INSTANTIATE(d)                                                                     \
-    template struct Constraints<d>;                                                                \
-    template Constraints<d> make_constraints(const Space<d>&, const Problem&,                      \
-                                             const std::vector<std::string>&);                     \
-    template MatrixX dof_positions(const Space<d>&);                                               \
-    template MatrixX rigid_body_modes(const Space<d>&, const Problem&, std::vector<std::string>&); \
-    template void require_held(const Space<d>&, const Problem&, const Constraints<d>&,             \
-                               const SparseMatrix&);                                               \
-    template std::vector<std::string> free_rigid_motions(                                          \
+#define COUTURE_INSTANTIATE(d)                                                                    \
+    template struct Constraints<d>;                                                               \
+    template Constraints<d> make_constraints(const Space<d>&, const Problem&,                     \
+                                             const std::vector<std::string>&);                    \
+    template MatrixX dof_positions(const Space<d>&);                                              \
+    template MatrixX rigid_body_modes(const Space<d>&, const Problem&, std::vector<std::string>&, \
+                                      const std::optional<Vector3>&);                             \
+    template void require_held(const Space<d>&, const Problem&, const Constraints<d>&,            \
+                               const SparseMatrix&);                                              \
+    template std::vector<std::string> free_rigid_motions(                                         \
         const Space<d>&, const Problem&, const Constraints<d>&, const SparseMatrix&);
 COUTURE_INSTANTIATE(2)
 COUTURE_INSTANTIATE(3)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "iga/mechanics/problem.h"
 #include "iga/topology/space.h"
@@ -54,9 +55,12 @@ template <int d>
 /// Displacements of the functions under the body's rigid motions: unknowns x modes. 3D: three
 /// translations and three rotations about the centre of the bounding box; plane: 2 + 1;
 /// axisymmetric: 1; Poisson: the constant. `names` gets one per column.
+///
+/// @param centre  of the rotations; nothing: the middle of the bounding box
 template <int d>
 [[nodiscard]] MatrixX rigid_body_modes(const Space<d>& space, const Problem& problem,
-                                       std::vector<std::string>& names);
+                                       std::vector<std::string>& names,
+                                       const std::optional<Vector3>& centre = {});
 
 /// Names the rigid motions of every connected body that neither constraints nor foundations hold;
 /// empty if all are held.

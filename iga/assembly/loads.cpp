@@ -159,29 +159,38 @@ void add_point_load(const Space<d>& space, const PointLoad& load, MatrixX& f) {
         }
         return;
     }
-    const double size = space.geometry().size();
+    add_force(space, locate_load(space.geometry(), load), load.force, f);
+}
+
+}  // namespace
+
+template <int d>
+Location<d> locate_load(const MultiPatch<d>& geometry, const PointLoad& load) {
+    const double size = geometry.size();
     constexpr double tolerance = 1e-6;
     double nearest_distance = std::numeric_limits<double>::infinity();
-    for (int p = 0; p < space.n_patches(); ++p) {
-        const Patch<d>& patch = space.geometry().patches[p];
+    for (int p = 0; p < geometry.n_patches(); ++p) {
+        const Patch<d>& patch = geometry.patches[p];
         const InvertedPoint<d> found =
             PointInversion<d>(patch).nearest(load.at->head(patch.dimension()));
         nearest_distance = std::min(nearest_distance, found.distance);
-        if (found.distance > tolerance * size) {
-            continue;
+        if (found.distance <= tolerance * size) {
+            return {p, found.xi};
         }
-        const PointBasis<d> basis = evaluate_basis(space.tensor(p), space.weights(p), found.xi);
-        for (std::size_t i = 0; i < basis.functions.size(); ++i) {
-            f.row(space.dofs(p)[basis.functions[i]]) +=
-                basis.values[i] * load.force.head(f.cols()).transpose();
-        }
-        return;
     }
     throw InputError("{}point load at {} lies {:.3g} outside the body; move it onto the part",
                      prefix(load), format_point(*load.at), nearest_distance);
 }
 
-}  // namespace
+template <int d>
+void add_force(const Space<d>& space, const Location<d>& place, const Vector3& force, MatrixX& f) {
+    const PointBasis<d> basis =
+        evaluate_basis(space.tensor(place.patch), space.weights(place.patch), place.xi);
+    for (std::size_t i = 0; i < basis.functions.size(); ++i) {
+        f.row(space.dofs(place.patch)[basis.functions[i]]) +=
+            basis.values[i] * force.head(f.cols()).transpose();
+    }
+}
 
 template <int d>
 MatrixX assemble_loads(const Space<d>& space, const Problem& problem, const std::string& load_case,
@@ -323,6 +332,10 @@ template MatrixX assemble_loads(const Space<2>&, const Problem&, const std::stri
                                 std::optional<int>);
 template MatrixX assemble_loads(const Space<3>&, const Problem&, const std::string&,
                                 std::optional<int>);
+template Location<2> locate_load(const MultiPatch<2>&, const PointLoad&);
+template Location<3> locate_load(const MultiPatch<3>&, const PointLoad&);
+template void add_force(const Space<2>&, const Location<2>&, const Vector3&, MatrixX&);
+template void add_force(const Space<3>&, const Location<3>&, const Vector3&, MatrixX&);
 template SparseMatrix assemble_foundations(const Space<2>&, const Problem&, std::optional<int>);
 template SparseMatrix assemble_foundations(const Space<3>&, const Problem&, std::optional<int>);
 

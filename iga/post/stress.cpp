@@ -110,9 +110,8 @@ StressState stress_at(const Problem& problem, const Field<d>& displacement,
 }
 
 template <int d>
-MatrixX project_stress(const Problem& problem, const Field<d>& displacement,
-                       const std::string& load_case) {
-    const Space<d>& space = *displacement.space;
+MatrixX stress_integrals(const Problem& problem, const Field<d>& displacement,
+                         const std::string& load_case) {
     const StressGrid<d> stresses(problem, displacement, load_case);
     LinearForm<d> form;
     form.n_components = 6;
@@ -125,7 +124,14 @@ MatrixX project_stress(const Problem& problem, const Field<d>& displacement,
                 }
             });
     };
-    const MatrixX rhs = integrate(space, form);
+    return integrate(*displacement.space, form);
+}
+
+template <int d>
+MatrixX project_stress(const Problem& problem, const Field<d>& displacement,
+                       const std::string& load_case) {
+    const Space<d>& space = *displacement.space;
+    const MatrixX rhs = stress_integrals(problem, displacement, load_case);
     const BlockMatrix mass = assemble(space, scalar_form<d>(0.0, 1.0));
     const std::unique_ptr<LinearSolver> solver = make_linear_solver({});
     solver->factorize({mass, {}, {}});
@@ -165,6 +171,7 @@ GaussPointStresses gauss_point_stresses(const Problem& problem, const Field<d>& 
 #define COUTURE_INSTANTIATE(d)                                                               \
     template StressState stress_at(const Problem&, const Field<d>&, const std::string&, int, \
                                    const Vector<d>&);                                        \
+    template MatrixX stress_integrals(const Problem&, const Field<d>&, const std::string&);  \
     template MatrixX project_stress(const Problem&, const Field<d>&, const std::string&);    \
     template GaussPointStresses gauss_point_stresses(const Problem&, const Field<d>&,        \
                                                      const std::string&);

@@ -22,6 +22,11 @@ template <int d>
 [[nodiscard]] StressState stress_at(const Problem& problem, const Field<d>& displacement,
                                     const std::string& load_case, int patch, const Vector<d>& xi);
 
+/// Integrals of the stress times the functions of the displacement's space: n_dofs x 6.
+template <int d>
+[[nodiscard]] MatrixX stress_integrals(const Problem& problem, const Field<d>& displacement,
+                                       const std::string& load_case);
+
 /// The stress as a smooth field, by L2 projection onto the displacement's space: n_dofs x 6.
 /// Continuous over all patches: at a jump of material it shows the mean.
 template <int d>

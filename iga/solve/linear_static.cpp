@@ -230,32 +230,34 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
         one.applied_force = sum_of_components(loads[c]);
 
         one.reactions = support_reactions(problem, constraints, VectorX(Ku.col(c) - f.col(c)));
-        Vector3 total = Vector3::Zero();
-        double scale = std::max(
-            {one.applied_force.norm(), one.foundation_force.norm(), f.col(c).norm(), 1e-300});
-        for (const auto& [on, force] : one.reactions) {
-            total += force;
-            scale = std::max(scale, force.norm());
-        }
-        Vector3 imbalance = one.applied_force + total + one.foundation_force;
-        if (problem.kinematics == Kinematics::axisymmetric) {
-            imbalance[0] = 0.0;  // hoop stress carries radial loads
-        }
-        one.balance = imbalance.norm() / scale;
+        one.balance = force_balance(problem, one.applied_force, one.reactions, one.foundation_force,
+                                    f.col(c).norm());
         result.cases.push_back(std::move(one));
     }
 
+    add_combinations<d>(result.cases, problem, [&](const CaseResult<d>& sum) {
+        return strain_energy(problem, sum.displacement, sum.name, options.n_gauss_points);
+    });
+    return result;
+}
+
+template <int d>
+void add_combinations(std::vector<CaseResult<d>>& cases, const Problem& problem,
+                      const std::function<double(const CaseResult<d>&)>& energy) {
+    const std::vector<CaseResult<d>> single = cases;
     for (const auto& [name, factors] : problem.combinations) {
         CaseResult<d> sum;
         sum.name = name;
-        sum.displacement = {space, MatrixX::Zero(space->n_dofs(), nc)};
+        sum.displacement = {single.front().displacement.space,
+                            MatrixX::Zero(single.front().displacement.coefficients.rows(),
+                                          single.front().displacement.coefficients.cols())};
         for (const auto& [case_name, factor] : factors) {
             const auto one = std::find_if(
-                result.cases.begin(), result.cases.begin() + n_cases,
-                [&, &wanted = case_name](const CaseResult<d>& r) { return r.name == wanted; });
-            if (one == result.cases.begin() + n_cases) {
+                single.begin(), single.end(),
+                [&wanted = case_name](const CaseResult<d>& r) { return r.name == wanted; });
+            if (one == single.end()) {
                 throw InputError("combination '{}': there is no load case '{}'; there are: {}",
-                                 name, case_name, fmt::join(cases, ", "));
+                                 name, case_name, fmt::join(problem.load_cases(), ", "));
             }
             sum.displacement.coefficients += factor * one->displacement.coefficients;
             sum.applied_force += factor * one->applied_force;
@@ -265,12 +267,30 @@ LinearStaticResult<d> solve_linear_static(const SpacePtr<d>& space, const Proble
             }
             sum.balance = std::max(sum.balance, one->balance);
         }
-        sum.energy = strain_energy(problem, sum.displacement, name, options.n_gauss_points);
-        result.cases.push_back(std::move(sum));
+        sum.energy = energy(sum);
+        cases.push_back(std::move(sum));
     }
-    return result;
 }
 
+double force_balance(const Problem& problem, const Vector3& applied,
+                     const std::map<std::string, Vector3>& reactions, const Vector3& foundations,
+                     double load_norm) {
+    Vector3 imbalance = applied + foundations;
+    double scale = std::max({applied.norm(), foundations.norm(), load_norm, 1e-300});
+    for (const auto& [on, force] : reactions) {
+        imbalance += force;
+        scale = std::max(scale, force.norm());
+    }
+    if (problem.kinematics == Kinematics::axisymmetric) {
+        imbalance[0] = 0.0;  // hoop stress carries radial loads
+    }
+    return imbalance.norm() / scale;
+}
+
+template void add_combinations(std::vector<CaseResult<2>>&, const Problem&,
+                               const std::function<double(const CaseResult<2>&)>&);
+template void add_combinations(std::vector<CaseResult<3>>&, const Problem&,
+                               const std::function<double(const CaseResult<3>&)>&);
 template LinearStaticResult<2> solve_linear_static(const SpacePtr<2>&, const Problem&,
                                                    const LinearStaticOptions&);
 template LinearStaticResult<3> solve_linear_static(const SpacePtr<3>&, const Problem&,

@@ -45,6 +45,18 @@ struct LinearStaticResult {
     int n_elements = 0;
 };
 
+/// Appends the combinations of load cases, their energies by `energy`.
+///
+/// @throws InputError  for a load case that there is not
+template <int d>
+void add_combinations(std::vector<CaseResult<d>>& cases, const Problem& problem,
+                      const std::function<double(const CaseResult<d>&)>& energy);
+
+/// |applied + reactions + foundations| over the largest of them and of `load_norm`.
+[[nodiscard]] double force_balance(const Problem& problem, const Vector3& applied,
+                                   const std::map<std::string, Vector3>& reactions,
+                                   const Vector3& foundations, double load_norm);
+
 /// Solves the linear problem on a space, all load cases with one factorization, then the
 /// combinations.
 ///

@@ -28,20 +28,15 @@ KnotVector::KnotVector(int degree, std::vector<double> knots)
                 i, knots_[i], i - 1, knots_[i - 1]);
         }
     }
-    for (int i = 0; i < n_knots; ++i) {
-        if (i == 0 || knots_[i] != knots_[i - 1]) {
-            breakpoints_.push_back(knots_[i]);
-            multiplicities_.push_back(0);
-        }
-        ++multiplicities_.back();
-    }
-    if (multiplicities_.front() != degree + 1 || multiplicities_.back() != degree + 1) {
+    const auto n_first = std::count(knots_.begin(), knots_.end(), knots_.front());
+    const auto n_last = std::count(knots_.begin(), knots_.end(), knots_.back());
+    if (n_first != degree + 1 || n_last != degree + 1) {
         throw InputError(
             "KnotVector: first knot {} occurs {} times, last knot {} occurs {} times; "
             "an open knot vector of degree {} repeats each {} times",
-            knots_.front(), multiplicities_.front(), knots_.back(), multiplicities_.back(), degree,
-            degree + 1);
+            knots_.front(), n_first, knots_.back(), n_last, degree, degree + 1);
     }
+    find_elements();
     for (std::size_t i = 1; i + 1 < breakpoints_.size(); ++i) {
         if (multiplicities_[i] > degree) {
             throw InputError(
@@ -50,11 +45,43 @@ KnotVector::KnotVector(int degree, std::vector<double> knots)
                 breakpoints_[i], multiplicities_[i], degree, degree);
         }
     }
-    int last_of_breakpoint = -1;
-    for (std::size_t i = 0; i + 1 < breakpoints_.size(); ++i) {
-        last_of_breakpoint += multiplicities_[i];
-        element_spans_.push_back(last_of_breakpoint);
+}
+
+KnotVector::KnotVector(Part, int degree, std::vector<double> knots)
+    : degree_(degree), knots_(std::move(knots)) {
+    find_elements();
+}
+
+void KnotVector::find_elements() {
+    const double first = knots_[degree_];
+    const double last = knots_[n_basis()];
+    for (std::size_t i = 0; i < knots_.size(); ++i) {
+        if (knots_[i] < first || knots_[i] > last) {
+            continue;
+        }
+        if (breakpoints_.empty() || knots_[i] != breakpoints_.back()) {
+            breakpoints_.push_back(knots_[i]);
+            multiplicities_.push_back(0);
+        }
+        ++multiplicities_.back();
+        if (i + 1 < knots_.size() && knots_[i] < last && knots_[i + 1] > knots_[i]) {
+            element_spans_.push_back(static_cast<int>(i));
+        }
     }
+}
+
+KnotVector KnotVector::restricted(int first, int end) const {
+    if (first < 0 || first >= end || end > n_elements()) {
+        throw InputError(
+            "KnotVector: elements {} to {} of {}; a part has at least one, all of "
+            "them there",
+            first, end - 1, n_elements());
+    }
+    const auto begin = knots_.begin();
+    return {
+        Part{},
+        degree_,
+        {begin + span_of_element(first) - degree_, begin + span_of_element(end - 1) + degree_ + 2}};
 }
 
 KnotVector KnotVector::uniform(int degree, int n_elements, double first, double last) {
@@ -94,6 +121,9 @@ KnotVector KnotVector::reversed() const {
     for (std::size_t i = 0; i < knots_.size(); ++i) {
         knots[i] = front() + back() - knots_[knots_.size() - 1 - i];
     }
+    if (!is_open()) {
+        return {Part{}, degree_, std::move(knots)};
+    }
     std::fill_n(knots.begin(), degree_ + 1, front());
     std::fill_n(knots.rbegin(), degree_ + 1, back());
     return {degree_, std::move(knots)};
@@ -108,7 +138,8 @@ KnotVector KnotVector::rescaled(double first, double last) const {
         const double t = (knots_[i] - front()) / (back() - front());
         knots[i] = t == 1.0 ? last : first + t * (last - first);
     }
-    return {degree_, std::move(knots)};
+    return is_open() ? KnotVector(degree_, std::move(knots))
+                     : KnotVector(Part{}, degree_, std::move(knots));
 }
 
 bool KnotVector::conforms_to(const KnotVector& other, double tolerance) const {

@@ -9,7 +9,8 @@ namespace couture::iga {
 constexpr int max_degree = 8;
 
 /// An open knot vector with its degree: the first and the last knot are repeated degree + 1 times,
-/// interior knots at most degree times (functions are at least continuous).
+/// interior knots at most degree times (functions are at least continuous). Or, made by
+/// `restricted` alone, a part of one, with the knots beyond its ends that its functions have.
 class KnotVector {
   public:
     /// Checks the rules above.
@@ -25,12 +26,13 @@ class KnotVector {
     [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
     [[nodiscard]] int n_basis() const { return static_cast<int>(knots_.size()) - degree_ - 1; }
     [[nodiscard]] int n_elements() const { return static_cast<int>(breakpoints_.size()) - 1; }
-    [[nodiscard]] double front() const { return knots_.front(); }
-    [[nodiscard]] double back() const { return knots_.back(); }
+    /// The interval on which the functions are meant.
+    [[nodiscard]] double front() const { return breakpoints_.front(); }
+    [[nodiscard]] double back() const { return breakpoints_.back(); }
 
-    /// Distinct knots, n_elements + 1 of them, increasing.
+    /// Distinct knots from front() to back(), n_elements + 1 of them, increasing.
     [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
-    /// How often each breakpoint occurs, n_elements + 1 numbers.
+    /// How often each breakpoint occurs among the knots, n_elements + 1 numbers.
     [[nodiscard]] const std::vector<int>& multiplicities() const { return multiplicities_; }
 
     /// Knot span of element `i_element`: the index s with knots[s] <= xi < knots[s + 1] there. The
@@ -46,6 +48,17 @@ class KnotVector {
     /// Means of degree consecutive knots, n_basis of them; for degree 1 the knots themselves.
     [[nodiscard]] std::vector<double> greville() const;
 
+    /// The functions that do not vanish on the elements from `first` on and before `end`, there
+    /// only: function i is function span_of_element(first) - degree + i of this. Their knots are
+    /// those of this one, not repeated at the new ends.
+    ///
+    /// @throws InputError  if there are no such elements
+    [[nodiscard]] KnotVector restricted(int first, int end) const;
+    /// Whether both ends are repeated degree + 1 times.
+    [[nodiscard]] bool is_open() const {
+        return multiplicities_.front() == degree_ + 1 && multiplicities_.back() == degree_ + 1;
+    }
+
     /// The same functions read backwards: xi -> front() + back() - xi.
     [[nodiscard]] KnotVector reversed() const;
     /// The same functions over [first, last].
@@ -57,6 +70,10 @@ class KnotVector {
     bool operator==(const KnotVector&) const = default;
 
   private:
+    struct Part {};
+    KnotVector(Part, int degree, std::vector<double> knots);
+    void find_elements();
+
     int degree_;
     std::vector<double> knots_;
     std::vector<double> breakpoints_;

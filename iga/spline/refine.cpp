@@ -284,6 +284,10 @@ Refinement prolongation_to(const KnotVector& coarse, const KnotVector& fine) {
         }
         breakpoints[i] = fine.breakpoints()[*there];
     }
+    if (!coarse.is_open()) {
+        // A part of a space keeps the knots beyond its ends, which `fine` has not.
+        return {fine, prolongation_matrix(coarse, fine)};
+    }
     const KnotVector snapped(coarse.degree(), expand(breakpoints, coarse.multiplicities()));
     return {fine, prolongation_matrix(snapped, fine)};
 }

@@ -31,4 +31,9 @@ std::vector<std::string> find_interfaces(MultiPatch<d>& multipatch, double toler
 template <int d>
 void make_conforming(MultiPatch<d>& multipatch, double tolerance = 1e-6);
 
+/// The same for functions alone: false if nothing had to be done.
+template <int d>
+bool make_conforming(std::vector<TensorSpace<d>>& spaces,
+                     const std::vector<Interface<d>>& interfaces);
+
 }  // namespace couture::iga

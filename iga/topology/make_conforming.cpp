@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -62,8 +63,8 @@ KnotVector oriented(const KnotVector& knots, bool is_reversed) {
 /// Calls visit(first, second, reversed) for the directions, numbered as in Sheets, that each
 /// interface joins.
 template <int d, typename Visit>
-void for_each_joined_direction(const MultiPatch<d>& multipatch, Visit&& visit) {
-    for (const Interface<d>& interface : multipatch.interfaces) {
+void for_each_joined_direction(const std::vector<Interface<d>>& interfaces, Visit&& visit) {
+    for (const Interface<d>& interface : interfaces) {
         const std::array<int, d - 1> here = tangential_directions<d>(interface.first_side);
         const std::array<int, d - 1> there = tangential_directions<d>(interface.second_side);
         for (int i = 0; i < d - 1; ++i) {
@@ -74,17 +75,28 @@ void for_each_joined_direction(const MultiPatch<d>& multipatch, Visit&& visit) {
     }
 }
 
+}  // namespace
+
 template <int d>
-void refine_sheets(MultiPatch<d>& multipatch) {
-    const int n_directions = multipatch.n_patches() * d;
+bool make_conforming(std::vector<TensorSpace<d>>& spaces,
+                     const std::vector<Interface<d>>& interfaces) {
+    const bool conforms =
+        std::all_of(interfaces.begin(), interfaces.end(), [&](const Interface<d>& interface) {
+            return !nonconforming_direction(spaces[interface.first_patch],
+                                            spaces[interface.second_patch], interface);
+        });
+    if (conforms) {
+        return false;
+    }
+    const int n_directions = static_cast<int>(spaces.size()) * d;
     Sheets sheets(n_directions);
-    for_each_joined_direction(multipatch, [&](int first, int second, bool is_reversed) {
+    for_each_joined_direction<d>(interfaces, [&](int first, int second, bool is_reversed) {
         sheets.join(first, second, is_reversed);
     });
     // A sheet that meets itself backwards (a Moebius band) needs knots that read the same both
     // ways.
     std::vector<bool> is_two_way(n_directions, false);
-    for_each_joined_direction(multipatch, [&](int first, int second, bool is_reversed) {
+    for_each_joined_direction<d>(interfaces, [&](int first, int second, bool is_reversed) {
         const Sheets::Member a = sheets.find(first);
         const Sheets::Member b = sheets.find(second);
         if ((a.is_reversed != b.is_reversed) != is_reversed) {
@@ -93,9 +105,7 @@ void refine_sheets(MultiPatch<d>& multipatch) {
     });
 
     std::map<int, KnotVector> common;
-    const auto own_knots = [&](int i) -> const KnotVector& {
-        return multipatch.patches[i / d].knots(i % d);
-    };
+    const auto own_knots = [&](int i) -> const KnotVector& { return spaces[i / d].knots[i % d]; };
     for (int i = 0; i < n_directions; ++i) {
         const Sheets::Member member = sheets.find(i);
         const KnotVector knots = oriented(own_knots(i).rescaled(0.0, 1.0), member.is_reversed);
@@ -110,25 +120,16 @@ void refine_sheets(MultiPatch<d>& multipatch) {
             }
         }
     }
-    for (int p = 0; p < multipatch.n_patches(); ++p) {
-        TensorSpace<d> space = multipatch.patches[p].space();
-        bool is_changed = false;
-        for (int k = 0; k < d; ++k) {
-            const Sheets::Member member = sheets.find(p * d + k);
-            const KnotVector target = oriented(common.at(member.sheet), member.is_reversed);
-            KnotVector& knots = space.knots[k];
-            if (!knots.conforms_to(target)) {
-                knots = snap_knots(target.rescaled(knots.front(), knots.back()), knots);
-                is_changed = true;
-            }
-        }
-        if (is_changed) {
-            multipatch.patches[p] = refine_to(multipatch.patches[p], space);
+    for (int i = 0; i < n_directions; ++i) {
+        const Sheets::Member member = sheets.find(i);
+        const KnotVector target = oriented(common.at(member.sheet), member.is_reversed);
+        KnotVector& knots = spaces[i / d].knots[i % d];
+        if (!knots.conforms_to(target)) {
+            knots = snap_knots(target.rescaled(knots.front(), knots.back()), knots);
         }
     }
+    return true;
 }
-
-}  // namespace
 
 template <int d>
 void make_conforming(MultiPatch<d>& multipatch, double tolerance) {
@@ -143,9 +144,22 @@ void make_conforming(MultiPatch<d>& multipatch, double tolerance) {
                 to_string(interface), gap.distance, gap.weight, max_distance, tolerance);
         }
     }
-    refine_sheets(multipatch);
+    std::vector<TensorSpace<d>> spaces;
+    for (const Patch<d>& patch : multipatch.patches) {
+        spaces.push_back(patch.space());
+    }
+    if (!make_conforming<d>(spaces, multipatch.interfaces)) {
+        return;
+    }
+    for (int p = 0; p < multipatch.n_patches(); ++p) {
+        if (spaces[p] != multipatch.patches[p].space()) {
+            multipatch.patches[p] = refine_to(multipatch.patches[p], spaces[p]);
+        }
+    }
 }
 
+template bool make_conforming(std::vector<TensorSpace<2>>&, const std::vector<Interface<2>>&);
+template bool make_conforming(std::vector<TensorSpace<3>>&, const std::vector<Interface<3>>&);
 template void make_conforming(MultiPatch<2>&, double);
 template void make_conforming(MultiPatch<3>&, double);
 

@@ -158,6 +158,19 @@ Space<d>::Space(MultiPatch<d> geometry, std::vector<TensorSpace<d>> spaces)
 }
 
 template <int d>
+Space<d>::Space(MultiPatch<d> geometry, std::vector<TensorSpace<d>> spaces, DofMap dof_map)
+    : geometry_(std::move(geometry)),
+      spaces_(std::move(spaces)),
+      dof_map_(std::move(dof_map)),
+      is_isoparametric_(true) {
+    for (int p = 0; p < n_patches(); ++p) {
+        const bool is_own = spaces_[p] == geometry_.patches[p].space();
+        weights_.push_back(is_own ? geometry_.patches[p].weights() : VectorX());
+        is_isoparametric_ = is_isoparametric_ && is_own;
+    }
+}
+
+template <int d>
 std::vector<int> Space<d>::dofs_on(const PatchEntity<d>& entity) const {
     if (entity.patch < 0 || entity.patch >= n_patches()) {
         throw InputError("Space: patch {} does not exist; there are {}", entity.patch, n_patches());

@@ -19,6 +19,10 @@ class Space {
     /// geometry's functions, else B-splines.
     Space(MultiPatch<d> geometry, std::vector<TensorSpace<d>> spaces);
 
+    /// The geometry's own functions, or B-splines, joined as `dof_map` says: for parts of patches,
+    /// whose functions do not follow from where they meet.
+    Space(MultiPatch<d> geometry, std::vector<TensorSpace<d>> spaces, DofMap dof_map);
+
     [[nodiscard]] const MultiPatch<d>& geometry() const { return geometry_; }
     [[nodiscard]] int n_patches() const { return geometry_.n_patches(); }
     /// Number of scalar functions; a field with c components has c n_dofs unknowns.
