@@ -244,6 +244,9 @@ BenchResult run_benchmarks(const BenchOptions& options) {
     if (is_wanted("fast_diagonalization")) {
         result.iterative = measure_iterative_solvers(options.quick);
     }
+    if (is_wanted("ranks")) {
+        result.ranks = measure_ranks(options.quick);
+    }
     if (is_wanted("cutting")) {
         result.cuts = measure_all_cutting(options.quick);
     }
@@ -259,8 +262,8 @@ BenchResult run_benchmarks(const BenchOptions& options) {
 
 const std::vector<std::string>& bench_sections() {
     static const std::vector<std::string> names{
-        "assembly", "products", "solution",  "fast_diagonalization",
-        "cutting",  "meshing",  "evaluation"};
+        "assembly", "products", "solution", "fast_diagonalization",
+        "ranks",    "cutting",  "meshing",  "evaluation"};
     return names;
 }
 
@@ -296,6 +299,7 @@ std::string bench_text(const BenchResult& result) {
     }
     text += products_text(result.products, result.limits);
     text += iterative_text(result.iterative);
+    text += ranks_text(result.ranks);
     text +=
         "\nLoops and pants: one thread, processor time; pants with their loops; us over n log2 n\n"
         "  part        genus  triangles   loops s   pants s  loops us/nlogn  pants us/nlogn\n";
@@ -382,6 +386,23 @@ std::string bench_json(const BenchResult& result) {
                                                 {"residual", row.residual},
                                                 {"jacobi_seconds", row.jacobi_seconds},
                                                 {"jacobi_iterations", row.jacobi_iterations}});
+    }
+    json["ranks"] = nlohmann::ordered_json::array();
+    for (const RankRow& row : result.ranks) {
+        json["ranks"].push_back({{"task", row.task},
+                                 {"solver", row.solver},
+                                 {"degree", row.degree},
+                                 {"elements_per_direction", row.n_elements},
+                                 {"ranks", row.n_ranks},
+                                 {"unknowns", row.n_unknowns},
+                                 {"assembly_seconds", row.assembly_seconds},
+                                 {"setup_seconds", row.setup_seconds},
+                                 {"solve_seconds", row.solve_seconds},
+                                 {"iterations", row.iterations},
+                                 {"unknowns_of_rank", row.unknowns_of_rank},
+                                 {"neighbours", row.neighbours},
+                                 {"bytes_sent", row.bytes_sent},
+                                 {"peak_memory_bytes", row.peak_memory}});
     }
     json["cutting"] = nlohmann::ordered_json::array();
     for (const CuttingRow& row : result.cuts) {

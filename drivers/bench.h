@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/mesh_bench.h"
+#include "drivers/ranks_bench.h"
 #include "drivers/reduced_model_bench.h"
 #include "drivers/solver_bench.h"
 #include "iga/linalg/machine_limits.h"
@@ -68,6 +69,7 @@ struct BenchResult {
     std::vector<SolveRow> solves;
     std::vector<ProductRow> products;
     std::vector<IterativeRow> iterative;
+    std::vector<RankRow> ranks;
     std::vector<CuttingRow> cuts;
     std::vector<MeshingRow> meshing;
     std::vector<EvaluationRow> evaluations;

@@ -21,7 +21,8 @@ const std::vector<std::string> identities{"problem", "geometry",  "solver",
                                           "part",    "task",      "genus",
                                           "patches", "degree",    "elements_per_direction",
                                           "input",   "triangles", "modes",
-                                          "samples", "unknowns",  "threads"};
+                                          "samples", "unknowns",  "threads",
+                                          "ranks"};
 /// Sizes that a mesh or a solver arrives at by itself name no row.
 bool is_identity(const std::string& section, const std::string& name) {
     return std::ranges::find(identities, name) != identities.end() &&

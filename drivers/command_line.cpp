@@ -32,7 +32,10 @@ CLI::App* add_command(CLI::App& app, Command& command, const std::string& name,
     sub->add_flag("--verbose", common.verbose, "print details");
     sub->add_option("--threads", common.n_threads, "number of threads (default: all cores)")
         ->check(CLI::Range(1, max_threads));
-    sub->callback([&command, run] { command.run = run; });
+    sub->callback([&command, run, name] {
+        command.run = run;
+        command.name = name;
+    });
     return sub;
 }
 

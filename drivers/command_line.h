@@ -10,6 +10,7 @@ namespace couture::drivers {
 /// What the command line asks for.
 struct Command {
     CommonOptions common;
+    std::string name;
     std::function<int()> run;
 };
 

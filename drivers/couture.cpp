@@ -10,6 +10,7 @@
 #include "drivers/summary.h"
 #include "iga/core/error.h"
 #include "iga/core/timer.h"
+#include "iga/distributed/communicator.h"
 
 namespace {
 
@@ -63,6 +64,14 @@ int main(int argc, char** argv) {
                         "-v), it needs {} MB to start",
                         available_address_space() >> 20U, least_memory >> 20U),
             drivers::ExitCode::run_failed, command.common.json);
+    }
+    if (iga::is_distributed_run() && command.name != "solve") {
+        return iga::rank_of_run() != 0
+                   ? drivers::ExitCode::bad_input
+                   : report(fmt::format("'{}' runs in one process; of several ranks of mpirun only "
+                                        "'solve' makes use",
+                                        command.name),
+                            drivers::ExitCode::bad_input, command.common.json);
     }
     return run_guarded(command);
 }

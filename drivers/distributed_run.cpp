@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "drivers/distributed_steps.h"
 #include "drivers/job_geometry.h"
 #include "drivers/job_summary.h"
 #include "drivers/probes.h"
@@ -13,8 +15,8 @@
 #include "iga/core/log.h"
 #include "iga/core/parallel.h"
 #include "iga/distributed/distributed_static.h"
+#include "iga/post/stress.h"
 #include "io/atomic_file.h"
-#include "io/pvtu_writer.h"
 
 namespace couture::drivers {
 
@@ -27,9 +29,6 @@ void require_distributable(const io::Deck& deck) {
         throw InputError("{}: {} in one process only; start it without mpirun, or leave it out",
                          deck.path.string(), what);
     };
-    if (deck.is_hyperelastic()) {
-        refuse("hyperelastic bodies are solved");
-    }
     if (deck.output.png) {
         refuse("pictures are drawn");
     }
@@ -47,12 +46,14 @@ class DistributedRun {
   public:
     DistributedRun(const iga::Communicator& ranks, const io::Deck& deck,
                    const iga::MultiPatch<d>& geometry, const fs::path& folder)
-        : ranks_(ranks), deck_(deck), folder_(folder) {
+        : ranks_(ranks), deck_(deck) {
         Timer timer;
+        GeometryCertificate certificate;
+        std::vector<std::optional<iga::Location<d>>> locations;
         ranks.together([&] {
-            certificate_ = check_deck<d>(deck, geometry);
-            locations_ = locate_probes<d>(deck, geometry);
-            summary_ = describe_job<d>(deck, geometry, certificate_);
+            certificate = check_deck<d>(deck, geometry);
+            locations = locate_probes<d>(deck, geometry);
+            summary_ = describe_job<d>(deck, geometry, certificate);
             summary_.volume = iga::body_volume(deck.problem, geometry);
             const io::Discretization& discretization = deck.discretization;
             try {
@@ -64,34 +65,24 @@ class DistributedRun {
         });
         add_phase("geometry", timer);
         space_.emplace(iga::distribute<d>(*geometry_, ranks));
+        job_.reset(new DistributedJob<d>{ranks, deck, folder, certificate, std::move(locations),
+                                         *geometry_, *space_,
+                                         iga::on_pieces(deck.problem, space_->pieces.boxes)});
         add_phase("distribution", timer);
     }
 
-    [[nodiscard]] Summary solve() {
-        iga::LinearStaticOptions options;
-        options.solver = deck_.solver;
-        options.n_gauss_points = deck_.discretization.n_gauss_points;
-        const iga::LinearStaticResult<d> result =
-            iga::solve_linear_static<d>(ranks_, *geometry_, *space_, deck_.problem, options);
-        summary_.phases.insert(summary_.phases.end(), result.phases.begin(), result.phases.end());
-        summary_.n_elements = result.n_elements;
-        summary_.n_unknowns = result.n_unknowns;
-        summary_.solver = result.solver;
-        for (const auto& one : result.cases) {
-            summary_.cases.push_back({one.name, one.energy, one.applied_force, one.foundation_force,
-                                      one.reactions, one.balance});
+    [[nodiscard]] Summary solve(bool resume) {
+        describe_size();
+        log::info(
+            fmt::format("solving for {} unknowns on {} ranks", summary_.n_unknowns, ranks_.size()));
+        if (deck_.is_hyperelastic()) {
+            Timer timer;
+            follow_on_ranks<d>(*job_, resume, summary_);
+            add_phase("load steps", timer);
+        } else {
+            solve_linear();
         }
-        Timer timer;
-        on_pieces_ = iga::on_pieces(deck_.problem, space_->pieces.boxes);
-        probe(result);
-        add_phase("probes", timer);
-        if (deck_.output.vtu) {
-            for (const auto& one : result.cases) {
-                write(one);
-            }
-        }
-        add_phase("output", timer);
-        describe_ranks();
+        summary_.distribution->peak_memory = ranks_.gather(static_cast<double>(peak_memory()));
         summary_.warnings = log::warnings();
         return std::move(summary_);
     }
@@ -102,105 +93,87 @@ class DistributedRun {
         timer = {};
     }
 
-    /// A value at a place is that of the rank whose elements contain it.
-    void probe(const iga::LinearStaticResult<d>& result) {
-        MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(deck_.probes.size()), 1);
-        std::vector<std::optional<iga::Location<d>>> elsewhere = locations_;
-        ranks_.together([&] {
-            for (std::size_t i = 0; i < deck_.probes.size(); ++i) {
-                if (!locations_[i]) {
-                    continue;
-                }
-                const auto& [patch, xi] = *locations_[i];
-                const std::array<int, d> element = geometry_->find_element(patch, xi);
-                const auto& boxes = space_->pieces.boxes;
-                for (std::size_t b = 0; b < boxes.size(); ++b) {
-                    if (boxes[b].patch == patch && boxes[b].contains(element)) {
-                        values(static_cast<Eigen::Index>(i), 0) =
-                            quantity_at<d>(on_pieces_, case_of(result, deck_.probes[i]),
-                                           deck_.probes[i].quantity, {static_cast<int>(b), xi});
-                    }
-                }
-                elsewhere[i].reset();
-            }
-        });
-        values = ranks_.sum(values);
-        summary_.probes = evaluate_probes<d>(deck_, elsewhere, result, summary_.volume);
-        for (std::size_t i = 0; i < deck_.probes.size(); ++i) {
-            if (locations_[i]) {
-                summary_.probes[i] =
-                    probe_result(deck_.probes[i], values(static_cast<Eigen::Index>(i), 0));
-            }
-        }
-    }
-
-    [[nodiscard]] static const iga::CaseResult<d>& case_of(const iga::LinearStaticResult<d>& result,
-                                                           const io::Probe& probe) {
-        const auto found =
-            std::find_if(result.cases.begin(), result.cases.end(),
-                         [&](const auto& one) { return one.name == probe.load_case; });
-        if (found == result.cases.end()) {
-            throw InputError("{}: there is no result for load case '{}'", probe.source,
-                             probe.load_case);
-        }
-        return *found;
-    }
-
-    void write(const iga::CaseResult<d>& one) {
-        const MatrixX stress =
-            iga::project_stress<d>(ranks_, *space_, on_pieces_, one.displacement, one.name);
-        const std::string stem =
-            deck_.path.stem().string() + (one.name.empty() ? "" : "_" + one.name);
-        const auto piece_name = [&](int rank) {
-            return fmt::format("{}_pieces/{}_{:04}.vtu", stem, stem, rank);
-        };
-        const auto arrays = field_arrays<d>(deck_.problem, one, stress);
-        io::VtuOptions options;
-        options.linear = deck_.output.linear;
-        options.provenance = provenance<d>(deck_, geometry_->geometry(), certificate_);
-        const auto& patches = geometry_->geometry().patches;
-        options.always_weights =
-            std::any_of(patches.begin(), patches.end(),
-                        [](const iga::Patch<d>& patch) { return patch.is_rational(); });
-        for (const iga::ElementBox<d>& box : space_->pieces.boxes) {
-            options.patch_numbers.push_back(box.patch);
-        }
-        ranks_.together([&] {
-            io::write_vtu<d>(folder_ / piece_name(ranks_.rank()), *space_->pieces.space, arrays, {},
-                             options);
-            if (ranks_.rank() == 0) {
-                std::vector<std::string> pieces;
-                for (int r = 0; r < ranks_.size(); ++r) {
-                    pieces.push_back(piece_name(r));
-                }
-                io::write_pvtu(folder_ / (stem + ".pvtu"), pieces, arrays, options);
-            }
-        });
-        summary_.files.push_back((folder_ / (stem + ".pvtu")).string());
-    }
-
-    void describe_ranks() {
+    void describe_size() {
         double n_elements = 0.0;
         for (const iga::ElementBox<d>& box : space_->pieces.boxes) {
             n_elements += static_cast<double>(box.n_elements());
         }
         const iga::SharedNumbers& numbers = space_->numbers;
-        const double nc = deck_.problem.physics == iga::Physics::poisson ? 1.0 : d;
+        const int nc = deck_.problem.physics == iga::Physics::poisson ? 1 : d;
+        summary_.n_elements = static_cast<int>(ranks_.sum(n_elements));
+        summary_.n_unknowns = nc * numbers.n_global();
         summary_.distribution = {
-            ranks_.gather(n_elements), ranks_.gather(nc * numbers.n_owned()),
+            ranks_.gather(n_elements),
+            ranks_.gather(nc * numbers.n_owned()),
             ranks_.gather(numbers.n_neighbours()),
             ranks_.gather(nc * sizeof(double) * static_cast<double>(numbers.n_sent())),
-            ranks_.gather(static_cast<double>(peak_memory()))};
+            {}};
+    }
+
+    void solve_linear() {
+        iga::LinearStaticOptions options;
+        options.solver = deck_.solver;
+        options.n_gauss_points = deck_.discretization.n_gauss_points;
+        const iga::LinearStaticResult<d> result =
+            iga::solve_linear_static<d>(ranks_, *geometry_, *space_, deck_.problem, options);
+        summary_.phases.insert(summary_.phases.end(), result.phases.begin(), result.phases.end());
+        summary_.solver = result.solver;
+        for (const auto& one : result.cases) {
+            summary_.cases.push_back({one.name, one.energy, one.applied_force, one.foundation_force,
+                                      one.reactions, one.balance});
+        }
+        Timer timer;
+        probe(result);
+        add_phase("probes", timer);
+        for (const auto& one : result.cases) {
+            if (deck_.output.vtu) {
+                write(one);
+            }
+        }
+        add_phase("output", timer);
+    }
+
+    /// A value at a place is that of the rank whose elements contain it.
+    void probe(const iga::LinearStaticResult<d>& result) {
+        MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(deck_.probes.size()), 1);
+        std::vector<std::optional<iga::Location<d>>> here(deck_.probes.size());
+        std::vector<ProbeResult> shares;
+        ranks_.together([&] {
+            // Where a place is not here, the value is one of those without a place: not used.
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                here[i] = job_->locations[i] ? job_->here(*job_->locations[i]) : std::nullopt;
+            }
+            shares = evaluate_probes<d>(deck_, job_->on_pieces, here, result, summary_.volume);
+        });
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            const bool is_shared = job_->locations[i].has_value();
+            values(static_cast<Eigen::Index>(i), 0) = is_shared && !here[i] ? 0.0 : shares[i].value;
+        }
+        const MatrixX sums = ranks_.sum(values);
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(i);
+            summary_.probes.push_back(
+                probe_result(deck_.probes[i], job_->locations[i] ? sums(row, 0) : values(row, 0)));
+        }
+    }
+
+    void write(const iga::CaseResult<d>& one) {
+        MatrixX integrals;
+        ranks_.together([&] {
+            integrals = iga::stress_integrals<d>(job_->on_pieces, one.displacement, one.name);
+        });
+        const MatrixX stress = iga::project<d>(ranks_, *space_, integrals);
+        const std::string stem =
+            deck_.path.stem().string() + (one.name.empty() ? "" : "_" + one.name);
+        summary_.files.push_back(
+            job_->write_pieces(stem, field_arrays<d>(deck_.problem, one, stress)).string());
     }
 
     const iga::Communicator& ranks_;
     const io::Deck& deck_;
-    const fs::path& folder_;
-    GeometryCertificate certificate_;
-    std::vector<std::optional<iga::Location<d>>> locations_;
     std::optional<iga::RefinedGeometry<d>> geometry_;
     std::optional<iga::DistributedSpace<d>> space_;
-    iga::Problem on_pieces_;
+    std::unique_ptr<DistributedJob<d>> job_;
     Summary summary_;
 };
 
@@ -215,6 +188,12 @@ int solve_on(const iga::Communicator& ranks, const SolveOptions& options,
         deck.output.linear = deck.output.linear || options.linear;
         deck.output.png = deck.output.png || options.png;
         require_distributable(deck);
+        if (options.resume && !deck.is_hyperelastic()) {
+            throw InputError(
+                "{}: --resume goes on from the states of a hyperelastic run; the materials of this "
+                "deck are linear, leave it out",
+                deck.path.string());
+        }
         folder = options.out.empty() ? fs::path("out") / deck.path.stem() : options.out;
         io::require_writable(folder);
         geometry = load_geometry(deck);
@@ -223,7 +202,7 @@ int solve_on(const iga::Communicator& ranks, const SolveOptions& options,
         [&]<int d>(iga::MultiPatch<d>& multipatch) {
             DistributedRun<d> run(ranks, deck, multipatch, folder);
             multipatch = {};
-            return run.solve();
+            return run.solve(options.resume);
         },
         geometry);
     const fs::path json_file = folder / (deck.path.stem().string() + ".json");
@@ -240,11 +219,14 @@ int solve_on(const iga::Communicator& ranks, const SolveOptions& options,
         } else if (!common.quiet) {
             fmt::print("{}", to_table(summary));
         }
-        if (!summary.passed()) {
+        if (!summary.finished()) {
+            fmt::print(stderr, "couture: the run did not reach its end: {}\n",
+                       summary.stepping->reason);
+        } else if (!summary.passed()) {
             fmt::print(stderr, "couture: an expectation is not met\n");
         }
     });
-    return summary.passed() ? ExitCode::done : ExitCode::run_failed;
+    return summary.finished() && summary.passed() ? ExitCode::done : ExitCode::run_failed;
 }
 
 }  // namespace

@@ -52,8 +52,20 @@ std::vector<io::PointArray> arrays_of(const MatrixX& displacement, const MatrixX
             {"det_F", det_F, {}}};
 }
 
-/// "NNNN.vtu" or "NNNN_remeshed.vtu" after the stem and a dash.
-bool belongs_to(const std::string& file, const std::string& stem) {
+}  // namespace
+
+template <int d>
+FieldSeries<d>::FieldSeries(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
+                            const GeometryCertificate& certificate, fs::path folder,
+                            std::string extension)
+    : deck_(deck),
+      folder_(std::move(folder)),
+      name_(deck.path.stem().string()),
+      provenance_(provenance<d>(deck, geometry, certificate)),
+      extension_(std::move(extension)) {}
+
+template <int d>
+bool FieldSeries<d>::belongs_to(const std::string& file, const std::string& stem) const {
     if (!file.starts_with(stem + "_")) {
         return false;
     }
@@ -63,18 +75,8 @@ bool belongs_to(const std::string& file, const std::string& stem) {
         ++n_digits;
     }
     rest.remove_prefix(n_digits);
-    return n_digits >= 4 && (rest == ".vtu" || rest == "_remeshed.vtu");
+    return n_digits >= 4 && (rest == extension_ || rest == "_remeshed" + extension_);
 }
-
-}  // namespace
-
-template <int d>
-FieldSeries<d>::FieldSeries(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
-                            const GeometryCertificate& certificate, fs::path folder)
-    : deck_(deck),
-      folder_(std::move(folder)),
-      name_(deck.path.stem().string()),
-      provenance_(provenance<d>(deck, geometry, certificate)) {}
 
 template <int d>
 std::vector<std::string> FieldSeries<d>::stems() const {
@@ -90,7 +92,7 @@ std::vector<std::string> FieldSeries<d>::stems() const {
 
 template <int d>
 fs::path FieldSeries<d>::file_of(const std::string& stem, int number, bool is_remeshing) const {
-    return folder_ / (stem + "_" + step_name(number, is_remeshing) + ".vtu");
+    return folder_ / (stem + "_" + step_name(number, is_remeshing) + extension_);
 }
 
 template <int d>
@@ -134,8 +136,7 @@ void FieldSeries<d>::write(const iga::AcceptedStep<d>& step) const {
     const iga::FiniteStresses<d> stresses = stresses_of(step);
     if (deck_.output.vtu) {
         const iga::FiniteFields fields = stresses.project();
-        const auto arrays =
-            arrays_of(step.state.displacement, fields.stress, fields.strain, fields.det_F);
+        const auto arrays = field_arrays(step.state.displacement, fields);
         // Positions of all files are undeformed ones.
         io::write_vtu<d>(file_of(name_, step.number, is_remeshing), *stresses.undeformed(), arrays,
                          {}, {.linear = deck_.output.linear, .provenance = provenance_});
@@ -194,6 +195,11 @@ std::vector<fs::path> FieldSeries<d>::files() const {
         result.push_back(folder_ / (name_ + ".png"));
     }
     return result;
+}
+
+std::vector<io::PointArray> field_arrays(const MatrixX& displacement,
+                                         const iga::FiniteFields& fields) {
+    return arrays_of(displacement, fields.stress, fields.strain, fields.det_F);
 }
 
 template class FieldSeries<2>;

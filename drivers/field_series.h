@@ -7,6 +7,7 @@
 #include "drivers/summary.h"
 #include "iga/post/finite_stress.h"
 #include "io/deck.h"
+#include "io/vtk_writer.h"
 
 namespace couture::drivers {
 
@@ -16,8 +17,10 @@ template <int d>
 class FieldSeries {
   public:
     /// @param deck  must outlive this
+    /// @param extension  ".pvtu" where the files are written by others, in pieces
     FieldSeries(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
-                const GeometryCertificate& certificate, std::filesystem::path folder);
+                const GeometryCertificate& certificate, std::filesystem::path folder,
+                std::string extension = ".vtu");
 
     /// Removes the files of an earlier run.
     void clear() const;
@@ -42,11 +45,18 @@ class FieldSeries {
     [[nodiscard]] std::vector<std::string> stems() const;
     [[nodiscard]] std::filesystem::path file_of(const std::string& stem, int number,
                                                 bool is_remeshing) const;
+    /// "NNNN.vtu" or "NNNN_remeshed.vtu" after the stem and a dash.
+    [[nodiscard]] bool belongs_to(const std::string& file, const std::string& stem) const;
 
     const io::Deck& deck_;
     std::filesystem::path folder_;
     std::string name_;
     std::string provenance_;
+    std::string extension_;
 };
+
+/// What result files show of a body at finite strain.
+[[nodiscard]] std::vector<io::PointArray> field_arrays(const MatrixX& displacement,
+                                                       const iga::FiniteFields& fields);
 
 }  // namespace couture::drivers

@@ -61,7 +61,7 @@ Summary run_linear(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     summary.volume = iga::body_volume(
         deck.problem, deck.discretization.interpolates_geometry ? space->geometry() : geometry);
     // Locations stay valid: refinement and interpolation keep every patch's parameters.
-    summary.probes = evaluate_probes<d>(deck, locations, result, summary.volume);
+    summary.probes = evaluate_probes<d>(deck, deck.problem, locations, result, summary.volume);
     add_phase("probes", timer.seconds());
     timer = {};
     for (const auto& file : write_result_files<d>(deck, space, result, certificate, folder)) {

@@ -129,7 +129,8 @@ double quantity_at(const iga::Problem& problem, const iga::CaseResult<d>& result
 
 template <int d>
 std::vector<ProbeResult> evaluate_probes(
-    const io::Deck& deck, const std::vector<std::optional<iga::Location<d>>>& locations,
+    const io::Deck& deck, const iga::Problem& problem,
+    const std::vector<std::optional<iga::Location<d>>>& locations,
     const iga::LinearStaticResult<d>& result, double volume) {
     std::vector<ProbeResult> values;
     for (std::size_t i = 0; i < deck.probes.size(); ++i) {
@@ -145,7 +146,7 @@ std::vector<ProbeResult> evaluate_probes(
         if (probe.quantity == "volume") {
             value = volume;
         } else if (locations[i]) {
-            value = quantity_at<d>(deck.problem, *load_case, probe.quantity, *locations[i]);
+            value = quantity_at<d>(problem, *load_case, probe.quantity, *locations[i]);
         } else {
             value = scalar_of(probe, *load_case);
         }
@@ -169,7 +170,8 @@ ProbeResult probe_result(const io::Probe& probe, double value) {
 }
 
 template <int d>
-double quantity_of(const io::Deck& deck, const iga::AcceptedStep<d>& step, const io::Probe& probe,
+double quantity_of(const io::Deck& deck, const iga::Problem& problem,
+                   const iga::AcceptedStep<d>& step, const io::Probe& probe,
                    const std::optional<iga::Location<d>>& location) {
     if (location && probe.quantity.starts_with("displacement")) {
         const iga::Field<d> u{step.state.reference->space, step.state.displacement};
@@ -178,7 +180,7 @@ double quantity_of(const io::Deck& deck, const iga::AcceptedStep<d>& step, const
     if (!location && probe.quantity != "volume") {
         return scalar_of(probe, step);
     }
-    const iga::FiniteStresses<d> stresses(deck.problem, step.state, deck.stepping.n_gauss_points,
+    const iga::FiniteStresses<d> stresses(problem, step.state, deck.stepping.n_gauss_points,
                                           deck.stepping.volumetric);
     return location
                ? state_quantity(probe.quantity, stresses.at(location->patch, location->xi).state)
@@ -190,18 +192,18 @@ template std::vector<std::optional<iga::Location<2>>> locate_probes<2>(const io:
 template std::vector<std::optional<iga::Location<3>>> locate_probes<3>(const io::Deck&,
                                                                        const iga::MultiPatch<3>&);
 template std::vector<ProbeResult> evaluate_probes<2>(
-    const io::Deck&, const std::vector<std::optional<iga::Location<2>>>&,
+    const io::Deck&, const iga::Problem&, const std::vector<std::optional<iga::Location<2>>>&,
     const iga::LinearStaticResult<2>&, double);
 template std::vector<ProbeResult> evaluate_probes<3>(
-    const io::Deck&, const std::vector<std::optional<iga::Location<3>>>&,
+    const io::Deck&, const iga::Problem&, const std::vector<std::optional<iga::Location<3>>>&,
     const iga::LinearStaticResult<3>&, double);
 template double quantity_at<2>(const iga::Problem&, const iga::CaseResult<2>&, const std::string&,
                                const iga::Location<2>&);
 template double quantity_at<3>(const iga::Problem&, const iga::CaseResult<3>&, const std::string&,
                                const iga::Location<3>&);
-template double quantity_of<2>(const io::Deck&, const iga::AcceptedStep<2>&, const io::Probe&,
-                               const std::optional<iga::Location<2>>&);
-template double quantity_of<3>(const io::Deck&, const iga::AcceptedStep<3>&, const io::Probe&,
-                               const std::optional<iga::Location<3>>&);
+template double quantity_of<2>(const io::Deck&, const iga::Problem&, const iga::AcceptedStep<2>&,
+                               const io::Probe&, const std::optional<iga::Location<2>>&);
+template double quantity_of<3>(const io::Deck&, const iga::Problem&, const iga::AcceptedStep<3>&,
+                               const io::Probe&, const std::optional<iga::Location<3>>&);
 
 }  // namespace couture::drivers

@@ -17,9 +17,12 @@ template <int d>
     const io::Deck& deck, const iga::MultiPatch<d>& geometry);
 
 /// The values of all probes. At a place that several patches share it is that of the first.
+///
+/// @param problem  the deck's, on the patches of the result
 template <int d>
 [[nodiscard]] std::vector<ProbeResult> evaluate_probes(
-    const io::Deck& deck, const std::vector<std::optional<iga::Location<d>>>& locations,
+    const io::Deck& deck, const iga::Problem& problem,
+    const std::vector<std::optional<iga::Location<d>>>& locations,
     const iga::LinearStaticResult<d>& result, double volume);
 
 /// The label of a probe, and whether a value passes.
@@ -33,10 +36,11 @@ template <int d>
 /// Of an accepted step at finite strain: Green-Lagrange strains, Cauchy stresses, the volume of
 /// the deformed body, and what the step itself knows.
 ///
+/// @param problem  the deck's, on the step's mesh
 /// @param location  on the step's mesh, for quantities of a point
 template <int d>
-[[nodiscard]] double quantity_of(const io::Deck& deck, const iga::AcceptedStep<d>& step,
-                                 const io::Probe& probe,
+[[nodiscard]] double quantity_of(const io::Deck& deck, const iga::Problem& problem,
+                                 const iga::AcceptedStep<d>& step, const io::Probe& probe,
                                  const std::optional<iga::Location<d>>& location);
 
 }  // namespace couture::drivers

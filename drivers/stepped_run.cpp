@@ -25,32 +25,6 @@ namespace {
 /// Times this close, relative to the end of the run, are equal.
 constexpr double time_rounding = 1e-9;
 
-io::StateOrigin origin_of(const io::Deck& deck, const std::string& signature) {
-    io::StateOrigin origin{deck.path.filename().string(), text_hash(deck.model_text), signature, "",
-                           ""};
-    if (!deck.geometry.file.empty()) {
-        origin.geometry_file = deck.geometry.file.filename().string();
-        origin.geometry_hash = text_hash(io::read_text(deck.geometry.file));
-    }
-    return origin;
-}
-
-template <int d>
-StepSummary to_summary(const iga::AcceptedStep<d>& step) {
-    return {step.number,
-            step.state.t,
-            step.step,
-            step.newton.iterations,
-            step.n_cuts,
-            step.newton.residuals.empty() ? 0.0 : step.newton.residuals.back(),
-            step.energy,
-            step.state.work,
-            step.newton.min_det_F,
-            step.applied_force,
-            step.reactions,
-            step.remeshing};
-}
-
 template <int d>
 class SteppedRun {
   public:
@@ -62,7 +36,8 @@ class SteppedRun {
           space_(make_space<d>(deck, geometry)),
           remeshing_(make_remeshing<d>(deck, space_->geometry())),
           start_(iga::make_start<d>(space_)),
-          states_(folder / "states", origin_of(deck, iga::signature(geometry)), start_.reference),
+          states_(folder / "states", state_origin(deck, iga::signature(geometry)),
+                  start_.reference),
           fields_(deck, geometry, certificate, folder) {
         last_.state = start_;
         io::remove_leftovers(folder, deck.path.stem().string());
@@ -114,9 +89,9 @@ class SteppedRun {
             if (!step) {
                 log::warn(fmt::format("{}: no step ended at t = {:g}", probe.source, *probe.t));
             }
-            results.push_back(
-                probe_result(probe, step ? quantity_of<d>(deck_, *step, probe, place_of(i, *step))
-                                         : std::numeric_limits<double>::quiet_NaN()));
+            results.push_back(probe_result(
+                probe, step ? quantity_of<d>(deck_, deck_.problem, *step, probe, place_of(i, *step))
+                            : std::numeric_limits<double>::quiet_NaN()));
         }
         return results;
     }
@@ -301,6 +276,32 @@ int count_elements(const iga::Space<d>& space) {
 
 }  // namespace
 
+io::StateOrigin state_origin(const io::Deck& deck, const std::string& signature) {
+    io::StateOrigin origin{deck.path.filename().string(), text_hash(deck.model_text), signature, "",
+                           ""};
+    if (!deck.geometry.file.empty()) {
+        origin.geometry_file = deck.geometry.file.filename().string();
+        origin.geometry_hash = text_hash(io::read_text(deck.geometry.file));
+    }
+    return origin;
+}
+
+template <int d>
+StepSummary to_summary(const iga::AcceptedStep<d>& step) {
+    return {step.number,
+            step.state.t,
+            step.step,
+            step.newton.iterations,
+            step.n_cuts,
+            step.newton.residuals.empty() ? 0.0 : step.newton.residuals.back(),
+            step.energy,
+            step.state.work,
+            step.newton.min_det_F,
+            step.applied_force,
+            step.reactions,
+            step.remeshing};
+}
+
 template <int d>
 Summary run_stepped(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
                     const GeometryCertificate& certificate, const std::filesystem::path& folder,
@@ -343,6 +344,8 @@ Summary run_stepped(const io::Deck& deck, const iga::MultiPatch<d>& geometry,
     return summary;
 }
 
+template StepSummary to_summary(const iga::AcceptedStep<2>&);
+template StepSummary to_summary(const iga::AcceptedStep<3>&);
 template Summary run_stepped<2>(const io::Deck&, const iga::MultiPatch<2>&,
                                 const GeometryCertificate&, const std::filesystem::path&, bool,
                                 std::vector<Phase>);

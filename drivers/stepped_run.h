@@ -6,6 +6,7 @@
 #include "drivers/summary.h"
 #include "iga/topology/multipatch.h"
 #include "io/deck.h"
+#include "io/state_file.h"
 
 namespace couture::drivers {
 
@@ -22,5 +23,11 @@ template <int d>
                                   const GeometryCertificate& certificate,
                                   const std::filesystem::path& folder, bool resume,
                                   std::vector<Phase> phases);
+
+/// What the states of a deck's run have in common.
+[[nodiscard]] io::StateOrigin state_origin(const io::Deck& deck, const std::string& signature);
+
+template <int d>
+[[nodiscard]] StepSummary to_summary(const iga::AcceptedStep<d>& step);
 
 }  // namespace couture::drivers

@@ -6,8 +6,10 @@
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLPUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <fstream>
@@ -41,6 +43,19 @@ std::vector<NamedRows> arrays_of(vtkFieldData& data) {
     return arrays;
 }
 
+template <typename Reader>
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& path) {
+    VtkMessages messages;
+    vtkNew<Reader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    if (messages.has_any() || reader->GetErrorCode() != 0) {
+        throw FileError("{}: can't be read as VTK XML, perhaps it was cut off; VTK says: {}",
+                        path.string(), messages.first());
+    }
+    return reader->GetOutput();
+}
+
 /// Enough to know the file's kind.
 std::string read_beginning(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -61,16 +76,11 @@ VtuMesh read_vtu(const std::filesystem::path& path) {
         beginning.find("UnstructuredGrid") == std::string::npos) {
         throw FileError("{}: not a VTK XML file of an unstructured grid (.vtu)", path.string());
     }
-    VtkMessages messages;
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
-    reader->SetFileName(path.c_str());
-    reader->Update();
-    if (messages.has_any() || reader->GetErrorCode() != 0) {
-        throw FileError("{}: can't be read as VTK XML, perhaps it was cut off; VTK says: {}",
-                        path.string(), messages.first());
-    }
-
-    vtkUnstructuredGrid& grid = *reader->GetOutput();
+    const bool is_in_pieces = beginning.find("PUnstructuredGrid") != std::string::npos;
+    const vtkSmartPointer<vtkUnstructuredGrid> output =
+        is_in_pieces ? read_grid<vtkXMLPUnstructuredGridReader>(path)
+                     : read_grid<vtkXMLUnstructuredGridReader>(path);
+    vtkUnstructuredGrid& grid = *output;
     VtuMesh mesh;
     if (grid.GetNumberOfPoints() > 0) {
         mesh.points = rows_of(*grid.GetPoints()->GetData());

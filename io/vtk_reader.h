@@ -27,7 +27,7 @@ struct VtuMesh {
     std::string provenance;
 };
 
-/// Reads one `.vtu` file.
+/// Reads one `.vtu` file, or the pieces of a `.pvtu` file.
 ///
 /// @throws FileError  if it is missing, not such a file, or cut off
 [[nodiscard]] VtuMesh read_vtu(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <petscsys.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <new>
@@ -60,6 +61,10 @@ int environment_number(const char* name) {
 
 bool is_distributed_run() {
     return environment_number("OMPI_COMM_WORLD_SIZE") > 1 || environment_number("PMI_SIZE") > 1;
+}
+
+int rank_of_run() {
+    return std::max(environment_number("OMPI_COMM_WORLD_RANK"), environment_number("PMI_RANK"));
 }
 
 Communicator::Communicator() {

@@ -52,5 +52,7 @@ class Communicator {
 
 /// True if this process was started by `mpirun` or `srun` with others beside it.
 [[nodiscard]] bool is_distributed_run();
+/// What it told this process of its rank; MPI is not started.
+[[nodiscard]] int rank_of_run();
 
 }  // namespace couture::iga

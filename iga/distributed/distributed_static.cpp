@@ -11,7 +11,6 @@
 #include "iga/core/log.h"
 #include "iga/distributed/distributed_constraints.h"
 #include "iga/distributed/distributed_solver.h"
-#include "iga/post/stress.h"
 #include "iga/solve/static_system.h"
 
 namespace couture::iga {
@@ -283,16 +282,10 @@ LinearStaticResult<d> solve_linear_static(const Communicator& ranks, RefinedGeom
 }
 
 template <int d>
-MatrixX project_stress(const Communicator& ranks, const DistributedSpace<d>& space,
-                       const Problem& on_pieces, const Field<d>& displacement,
-                       const std::string& load_case) {
-    const Space<d>& pieces = *space.pieces.space;
-    MatrixX integrals;
+MatrixX project(const Communicator& ranks, const DistributedSpace<d>& space,
+                const MatrixX& integrals) {
     BlockMatrix mass;
-    ranks.together([&] {
-        integrals = stress_integrals(on_pieces, displacement, load_case);
-        mass = assemble(pieces, scalar_form<d>(0.0, 1.0));
-    });
+    ranks.together([&] { mass = assemble(*space.pieces.space, scalar_form<d>(0.0, 1.0)); });
     SolverOptions options;
     options.petsc_options = "-pc_type bjacobi -sub_pc_type icc";
     DistributedSolver solver(ranks, options);
@@ -306,8 +299,7 @@ MatrixX project_stress(const Communicator& ranks, const DistributedSpace<d>& spa
     template LinearStaticResult<d> solve_linear_static(const Communicator&, RefinedGeometry<d>&,   \
                                                        const DistributedSpace<d>&, const Problem&, \
                                                        const LinearStaticOptions&);                \
-    template MatrixX project_stress(const Communicator&, const DistributedSpace<d>&,               \
-                                    const Problem&, const Field<d>&, const std::string&);
+    template MatrixX project(const Communicator&, const DistributedSpace<d>&, const MatrixX&);
 COUTURE_INSTANTIATE(2)
 COUTURE_INSTANTIATE(3)
 #undef COUTURE_INSTANTIATE

@@ -16,12 +16,12 @@ template <int d>
                                                         const Problem& problem,
                                                         const LinearStaticOptions& options);
 
-/// `project_stress` on all ranks: rows of this rank's pieces.
+/// Fields of which the ranks have integrals times functions: coefficients of this rank's pieces by
+/// L2 projection.
 ///
-/// @param on_pieces  the problem on the rank's pieces
+/// @param integrals  shares of this rank's elements, n_dofs x fields
 template <int d>
-[[nodiscard]] MatrixX project_stress(const Communicator& ranks, const DistributedSpace<d>& space,
-                                     const Problem& on_pieces, const Field<d>& displacement,
-                                     const std::string& load_case);
+[[nodiscard]] MatrixX project(const Communicator& ranks, const DistributedSpace<d>& space,
+                              const MatrixX& integrals);
 
 }  // namespace couture::iga

@@ -62,6 +62,10 @@ void append_cells(const GeometryGrid<d>& grid, int first, std::vector<std::vecto
 
 }  // namespace
 
+FiniteFields FiniteFields::from(const MatrixX& coefficients) {
+    return {coefficients.leftCols(6), coefficients.middleCols(6, 6), coefficients.rightCols(1)};
+}
+
 template <int d>
 FiniteStresses<d>::FiniteStresses(const Problem& problem, const SteppingState<d>& state,
                                   std::optional<int> n_gauss_points, Volumetric volumetric)
@@ -83,7 +87,7 @@ FiniteState FiniteStresses<d>::at(int patch, const Vector<d>& xi) const {
 }
 
 template <int d>
-FiniteFields FiniteStresses<d>::project() const {
+MatrixX FiniteStresses<d>::integrals() const {
     constexpr int n_columns = 13;
     LinearForm<d> form;
     form.n_components = n_columns;
@@ -99,13 +103,18 @@ FiniteFields FiniteStresses<d>::project() const {
             }
         }
     };
-    const MatrixX rhs = integrate(*undeformed_, form, {}, n_gauss_points_);
+    return integrate(*undeformed_, form, {}, n_gauss_points_);
+}
+
+template <int d>
+FiniteFields FiniteStresses<d>::project() const {
+    const MatrixX rhs = integrals();
     const BlockMatrix mass = assemble(*undeformed_, scalar_form<d>(0.0, 1.0));
     const std::unique_ptr<LinearSolver> solver = make_linear_solver({});
     solver->factorize({mass, {}, {}});
     MatrixX result;
     (void)solver->solve(rhs, result);
-    return {result.leftCols(6), result.middleCols(6, 6), result.rightCols(1)};
+    return FiniteFields::from(result);
 }
 
 template <int d>

@@ -25,6 +25,9 @@ struct FiniteFields {
     MatrixX strain;
     /// n_dofs x 1.
     MatrixX det_F;
+
+    /// @param coefficients  n_dofs x 13: stress, strain, det F
+    [[nodiscard]] static FiniteFields from(const MatrixX& coefficients);
 };
 
 /// The state at the Gauss points of all elements.
@@ -58,6 +61,9 @@ class FiniteStresses {
     /// @throws GeometryError  where the map is singular
     [[nodiscard]] FiniteState at(int patch, const Vector<d>& xi) const;
     [[nodiscard]] FiniteFields project() const;
+    /// Integrals of what `project` makes fields of times the functions, n_dofs x 13: by the mass
+    /// matrix they are the coefficients for `FiniteFields::from`.
+    [[nodiscard]] MatrixX integrals() const;
     [[nodiscard]] FiniteGaussPoints at_gauss_points() const;
     /// Of the deformed body: with the thickness of plane problems, or of the full ring.
     [[nodiscard]] double volume() const;

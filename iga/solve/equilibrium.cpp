@@ -7,6 +7,7 @@
 
 #include "iga/assembly/loads.h"
 #include "iga/assembly/sparsity.h"
+#include "iga/core/error.h"
 #include "iga/core/log.h"
 #include "iga/linalg/cholmod_solver.h"
 #include "iga/solve/static_system.h"
@@ -82,16 +83,17 @@ MatrixX to_displacement(const Constraints<d>& constraints, const MatrixX& unknow
 template <int d>
 Equilibrium<d>::Equilibrium(ReferencePtr<d> reference, const Problem& problem, double end,
                             std::optional<int> n_gauss_points, Volumetric volumetric,
-                            const SolverOptions& solver)
+                            const SolverOptions& solver, BodyShare<d>* share)
     : reference_(std::move(reference)),
       undeformed_(reference_->undeformed()),
       problem_(problem),
+      share_(share),
+      on_pieces_(share != nullptr ? share->on_pieces(problem) : problem),
       end_(end),
       n_gauss_points_(n_gauss_points),
       solver_options_(solver),
-      foundations_(assemble_foundations(*undeformed_, problem, n_gauss_points)),
-      body_(reference_, problem, n_gauss_points, volumetric),
-      solver_(make_linear_solver(solver)) {
+      foundations_(assemble_foundations(*undeformed_, on_pieces_, n_gauss_points)),
+      body_(reference_, on_pieces_, n_gauss_points, volumetric) {
     if (!is_matrix_free()) {
         matrix_ = make_pattern(*reference_->space, d);
     } else if (body_.is_projected()) {
@@ -100,6 +102,17 @@ Equilibrium<d>::Equilibrium(ReferencePtr<d> reference, const Problem& problem, d
             "incompressible materials; set volumetric = \"full\" in [discretization] or take "
             "another linear solver");
     }
+    if (share_ != nullptr) {
+        if (is_matrix_free() || share_->max(body_.is_projected() ? 1.0 : 0.0) > 0.0) {
+            throw InputError(
+                "hyperelastic bodies are solved with \"petsc\" and volumetric = \"full\" where "
+                "several processes have some elements each; for nearly incompressible materials "
+                "start one process");
+        }
+        share_->require_held(problem);
+        return;
+    }
+    solver_ = make_linear_solver(solver);
     require_held(*undeformed_, problem, make_constraints(*undeformed_, problem, {""}),
                  foundations_);
 }
@@ -108,10 +121,18 @@ template <int d>
 LoadState<d> Equilibrium<d>::loads_at(double t) const {
     LoadState<d> loads;
     loads.t = t;
-    loads.problem = at_time(problem_, t, end_);
+    loads.problem = at_time(on_pieces_, t, end_);
+    const auto follows = [](const Pressure& load) { return load.follows_body; };
+    if (share_ != nullptr) {
+        Problem whole = at_time(problem_, t, end_);
+        loads.constraints = share_->constraints(whole);
+        std::erase_if(whole.pressures, follows);
+        loads.dead_loads = share_->loads(whole);
+        return loads;
+    }
     loads.constraints = make_constraints(*undeformed_, loads.problem, {""});
     Problem dead = loads.problem;
-    std::erase_if(dead.pressures, [](const Pressure& load) { return load.follows_body; });
+    std::erase_if(dead.pressures, follows);
     loads.dead_loads = assemble_loads(*undeformed_, dead, "", n_gauss_points_);
     return loads;
 }
@@ -120,6 +141,9 @@ template <int d>
 bool Equilibrium<d>::move_to(const LoadState<d>& loads, const MatrixX& unknowns) {
     displacement_ = to_displacement(loads.constraints, unknowns);
     smallest_ = body_.deform(displacement_);
+    if (share_ != nullptr) {
+        smallest_.det_F = -share_->max(std::isnan(smallest_.det_F) ? 0.0 : -smallest_.det_F);
+    }
     if (!(smallest_.det_F > collapsed)) {
         return false;
     }
@@ -132,10 +156,63 @@ bool Equilibrium<d>::move_to(const LoadState<d>& loads, const MatrixX& unknowns)
     }
     MatrixX both(forces.size(), 2);
     both << forces, flatten(external_rows_);
+    both = complete(std::move(both));
     loads.constraints.to_frames(both);
     internal_ = both.col(0);
     external_ = both.col(1);
-    return std::isfinite(internal_.norm()) && std::isfinite(external_.norm());
+    return std::isfinite(norm(internal_)) && std::isfinite(norm(external_));
+}
+
+template <int d>
+MatrixX Equilibrium<d>::complete(MatrixX share) const {
+    return share_ != nullptr ? share_->complete(share) : std::move(share);
+}
+
+template <int d>
+double Equilibrium<d>::energy() const {
+    return share_ != nullptr ? share_->sum(body_.energy()) : body_.energy();
+}
+
+template <int d>
+Vector3 Equilibrium<d>::applied_force() const {
+    Vector3 force = sum_of_components(external_rows_);
+    for (int a = 0; a < 3 && share_ != nullptr; ++a) {
+        force[a] = share_->sum(force[a]);
+    }
+    return force;
+}
+
+template <int d>
+std::map<std::string, Vector3> Equilibrium<d>::reactions(const LoadState<d>& loads) const {
+    if (share_ == nullptr) {
+        return support_reactions(problem_, loads.constraints, residual());
+    }
+    std::map<std::string, Vector3> result = support_reactions(
+        problem_, loads.constraints, VectorX(residual().cwiseProduct(share_->weights())));
+    for (auto& [on, force] : result) {
+        for (double& component : force) {
+            component = share_->sum(component);
+        }
+    }
+    return result;
+}
+
+template <int d>
+double Equilibrium<d>::dot(const VectorX& a, const VectorX& b,
+                           const std::vector<char>* is_fixed) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+        if (is_fixed == nullptr || (*is_fixed)[i] == 0) {
+            sum += a[i] * b[i] * (share_ != nullptr ? share_->weights()[i] : 1.0);
+        }
+    }
+    return share_ != nullptr ? share_->sum(sum) : sum;
+}
+
+template <int d>
+double Equilibrium<d>::largest(const VectorX& a) const {
+    const double here = a.size() > 0 ? a.cwiseAbs().maxCoeff() : 0.0;
+    return share_ != nullptr ? share_->max(here) : here;
 }
 
 template <int d>
@@ -144,7 +221,7 @@ double Equilibrium<d>::stiffness_scale() const {
     for (const double value : matrix_.values) {
         largest = std::max(largest, std::abs(value));
     }
-    return largest;
+    return share_ != nullptr ? share_->max(largest) : largest;
 }
 
 template <int d>
@@ -171,7 +248,33 @@ void Equilibrium<d>::linearize(const LoadState<d>& loads) {
             coupling_->B = SparseMatrix(Q * coupling_->B);
         }
     }
-    skew_ = free_entries(skew_, loads.constraints.is_fixed, stiffness_scale());
+    const double scale = stiffness_scale();
+    if (share_ != nullptr) {
+        require_symmetric(loads);
+        skew_ = SparseMatrix(skew_.rows(), skew_.cols());
+        return;
+    }
+    skew_ = free_entries(skew_, loads.constraints.is_fixed, scale);
+}
+
+template <int d>
+void Equilibrium<d>::require_symmetric(const LoadState<d>& loads) const {
+    // Each share has a rim where the processes' elements meet: only sums tell.
+    VectorX probe(internal_.size());
+    for (Eigen::Index i = 0; i < probe.size(); ++i) {
+        probe[i] = std::sin(1.0 + static_cast<double>(i)) * share_->weights()[i];
+    }
+    probe = share_->complete(probe);
+    for (Eigen::Index i = 0; i < probe.size(); ++i) {
+        probe[i] = loads.constraints.is_fixed[i] != 0 ? 0.0 : probe[i];
+    }
+    const VectorX product = share_->complete(skew_ * probe);
+    constexpr double rounding = 1e-10;
+    if (norm(product, &loads.constraints.is_fixed) > rounding * stiffness_scale() * norm(probe)) {
+        throw SolverError(
+            "a pressure that follows an open rim makes the tangent unsymmetric; start one process, "
+            "or hold the rim");
+    }
 }
 
 template <int d>
@@ -196,7 +299,7 @@ void Equilibrium<d>::assemble_matrix(const LoadState<d>& loads) {
 
 template <int d>
 MatrixX Equilibrium<d>::apply(const MatrixX& x) const {
-    MatrixX result = system_ ? *system_ * x : matrix_ * x;
+    MatrixX result = complete(system_ ? *system_ * x : matrix_ * x);
     result += skew_ * x;
     if (coupling_) {
         Eigen::SimplicialLDLT<SparseMatrix> compliance(coupling_->compliance);
@@ -244,6 +347,12 @@ BlockMatrix Equilibrium<d>::extended_matrix() const {
 template <int d>
 MatrixX Equilibrium<d>::solve(const LoadState<d>& loads, const MatrixX& b) {
     const std::vector<char>& is_fixed = loads.constraints.is_fixed;
+    if (share_ != nullptr) {
+        std::vector<std::string> names;
+        MatrixX modes = rigid_body_modes(*reference_->space, problem_, names, Vector3::Zero());
+        loads.constraints.to_frames(modes);
+        return share_->solve(matrix_, is_fixed, modes, b);
+    }
     MatrixX x;
     if (skew_.nonZeros() == 0 && !coupling_) {
         try {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cmath>
+#include <map>
 #include <memory>
 
 #include "iga/assembly/constraints.h"
 #include "iga/assembly/finite_strain.h"
 #include "iga/assembly/follower_pressure.h"
 #include "iga/linalg/sparse_solver.h"
+#include "iga/solve/body_share.h"
 #include "iga/solve/matrix_free_system.h"
 
 namespace couture::iga {
@@ -29,11 +32,14 @@ class Equilibrium {
   public:
     /// @param problem  must outlive this
     /// @param end  time at which loads that do not name t have the value that they are given
-    /// @throws InputError, TopologyError  as `solve_linear_static`; for matrix_free where the
-    ///                                    volumetric part is projected
+    /// @param share  where several processes have some elements each: the reference is that of this
+    ///               process' pieces. Must outlive this; null: all elements are here
+    /// @throws InputError, TopologyError  as `solve_linear_static`; for matrix_free, and for
+    /// several
+    ///                                    processes, where the volumetric part is projected
     Equilibrium(ReferencePtr<d> reference, const Problem& problem, double end,
                 std::optional<int> n_gauss_points, Volumetric volumetric,
-                const SolverOptions& solver);
+                const SolverOptions& solver, BodyShare<d>* share = nullptr);
 
     [[nodiscard]] LoadState<d> loads_at(double t) const;
 
@@ -47,11 +53,22 @@ class Equilibrium {
     [[nodiscard]] const VectorX& internal_forces() const { return internal_; }
     [[nodiscard]] const VectorX& external_forces() const { return external_; }
     [[nodiscard]] VectorX residual() const { return internal_ - external_; }
-    [[nodiscard]] double energy() const { return body_.energy(); }
-    /// Loads in the axes' directions, n_dofs x d.
-    [[nodiscard]] const MatrixX& external_rows() const { return external_rows_; }
+    /// Of the whole body.
+    [[nodiscard]] double energy() const;
+    [[nodiscard]] Vector3 applied_force() const;
+    /// Of the residual at the supports.
+    [[nodiscard]] std::map<std::string, Vector3> reactions(const LoadState<d>& loads) const;
     /// n_dofs x d.
     [[nodiscard]] const MatrixX& displacement() const { return displacement_; }
+
+    /// Over the unknowns of the whole body; `is_fixed`: over those that are free.
+    [[nodiscard]] double dot(const VectorX& a, const VectorX& b,
+                             const std::vector<char>* is_fixed = nullptr) const;
+    [[nodiscard]] double norm(const VectorX& a, const std::vector<char>* is_fixed = nullptr) const {
+        return std::sqrt(dot(a, a, is_fixed));
+    }
+    /// Largest absolute value.
+    [[nodiscard]] double largest(const VectorX& a) const;
 
     /// Assembles the derivative of the residual by the unknowns where the body is.
     void linearize(const LoadState<d>& loads);
@@ -70,10 +87,17 @@ class Equilibrium {
     [[nodiscard]] SparseMatrix addition() const;
     void assemble_matrix(const LoadState<d>& loads);
     [[nodiscard]] BlockMatrix extended_matrix() const;
+    /// Columns from shares, where there are several processes.
+    [[nodiscard]] MatrixX complete(MatrixX share) const;
+    /// @throws SolverError  if antisymmetric parts of several processes do not cancel
+    void require_symmetric(const LoadState<d>& loads) const;
 
     ReferencePtr<d> reference_;
     SpacePtr<d> undeformed_;
     const Problem& problem_;
+    BodyShare<d>* share_;
+    /// What `problem_` is on the elements here.
+    Problem on_pieces_;
     double end_;
     std::optional<int> n_gauss_points_;
     SolverOptions solver_options_;
@@ -83,6 +107,7 @@ class Equilibrium {
 
     MatrixX displacement_;
     SmallestVolume<d> smallest_;
+    /// Loads of the elements here in the axes' directions, n_dofs x d.
     MatrixX external_rows_;
     VectorX internal_;
     VectorX external_;

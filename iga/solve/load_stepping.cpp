@@ -78,12 +78,13 @@ class Stepper {
   public:
     Stepper(const SteppingState<d>& from, const Problem& problem, const SteppingOptions& options,
             const std::function<void(const AcceptedStep<d>&)>& accept,
-            const Remeshing<d>& remeshing)
+            const Remeshing<d>& remeshing, BodyShare<d>* share)
         : state_(from),
           problem_(problem),
           options_(options),
           accept_(accept),
           remeshing_(remeshing),
+          share_(share),
           stops_(options.stops) {
         if (state_.displacement.size() == 0) {
             state_.displacement = MatrixX::Zero(state_.reference->space->n_dofs(), d);
@@ -132,7 +133,7 @@ class Stepper {
         state_.reference = std::move(reference);
         body_ = std::make_unique<Equilibrium<d>>(state_.reference, problem_, options_.end,
                                                  options_.n_gauss_points, options_.volumetric,
-                                                 options_.newton.solver);
+                                                 options_.newton.solver, share_);
     }
 
     /// Forces at the start, for the work of the first step.
@@ -150,7 +151,7 @@ class Stepper {
 
     void note_forces(const LoadState<d>& loads) {
         forces_ = to_displacement(loads.constraints, body_->internal_forces());
-        reactions_ = support_reactions(problem_, loads.constraints, body_->residual());
+        reactions_ = body_->reactions(loads);
         energy_ = body_->energy();
     }
 
@@ -245,7 +246,7 @@ class Stepper {
         const MatrixX moved = next.displacement - state_.displacement;
         state_ = next;
         note_forces(body_->loads_at(state_.t));
-        state_.work += 0.5 * (before + forces_).cwiseProduct(moved).sum();
+        state_.work += 0.5 * body_->dot(flatten(before + forces_), flatten(moved));
         state_.next_step = step_;
         ++state_.n_steps;
         report_.t = state_.t;
@@ -256,7 +257,7 @@ class Stepper {
     void publish(AcceptedStep<d>& accepted) {
         accepted.number = state_.n_steps;
         accepted.energy = energy_;
-        accepted.applied_force = sum_of_components(body_->external_rows());
+        accepted.applied_force = body_->applied_force();
         accepted.reactions = reactions_;
         accepted.state = state_;
         accept_(accepted);
@@ -463,6 +464,7 @@ class Stepper {
     const SteppingOptions& options_;
     const std::function<void(const AcceptedStep<d>&)>& accept_;
     const Remeshing<d>& remeshing_;
+    BodyShare<d>* share_;
     std::unique_ptr<Equilibrium<d>> body_;
     SteppingReport report_;
     double step_ = 0.0;
@@ -489,10 +491,15 @@ template <int d>
 SteppingReport follow_loads(const SteppingState<d>& from, const Problem& problem,
                             const SteppingOptions& options,
                             const std::function<void(const AcceptedStep<d>&)>& accept,
-                            const Remeshing<d>& remeshing) {
+                            const Remeshing<d>& remeshing, BodyShare<d>* share) {
+    if (share != nullptr && remeshing.mesh) {
+        throw InputError(
+            "load steps: a body of which several processes have some elements each is not meshed "
+            "again; leave [remeshing] out, or start one process");
+    }
     check_options(options);
     check_problem(problem);
-    return Stepper<d>(from, problem, options, accept, remeshing).run();
+    return Stepper<d>(from, problem, options, accept, remeshing, share).run();
 }
 
 template SteppingState<2> make_start(const SpacePtr<2>&);
@@ -500,10 +507,10 @@ template SteppingState<3> make_start(const SpacePtr<3>&);
 template SteppingReport follow_loads<2>(const SteppingState<2>&, const Problem&,
                                         const SteppingOptions&,
                                         const std::function<void(const AcceptedStep<2>&)>&,
-                                        const Remeshing<2>&);
+                                        const Remeshing<2>&, BodyShare<2>*);
 template SteppingReport follow_loads<3>(const SteppingState<3>&, const Problem&,
                                         const SteppingOptions&,
                                         const std::function<void(const AcceptedStep<3>&)>&,
-                                        const Remeshing<3>&);
+                                        const Remeshing<3>&, BodyShare<3>*);
 
 }  // namespace couture::iga

@@ -153,13 +153,15 @@ struct SteppingReport {
 /// @param accept  called after each accepted step, in order, and after each remeshing; what it
 ///                throws ends the run
 /// @param remeshing  without `mesh`: never
+/// @param share  where several processes have some elements each, see `Equilibrium`
 /// @throws InputError, TopologyError  as `solve_linear_static`; also for load cases and
 ///                                    temperatures, which a stepped run does not have
 template <int d>
 [[nodiscard]] SteppingReport follow_loads(const SteppingState<d>& from, const Problem& problem,
                                           const SteppingOptions& options,
                                           const std::function<void(const AcceptedStep<d>&)>& accept,
-                                          const Remeshing<d>& remeshing = {});
+                                          const Remeshing<d>& remeshing = {},
+                                          BodyShare<d>* share = nullptr);
 
 /// The undeformed body.
 template <int d>

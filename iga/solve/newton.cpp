@@ -20,23 +20,6 @@ constexpr double rounding = 1e-14;
 /// Step in time, relative to it, for the derivative of the loads: exact where they are linear.
 constexpr double time_difference = 1e-4;
 
-/// Norm over the free unknowns.
-double free_norm(const VectorX& r, const std::vector<char>& is_fixed) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < r.size(); ++i) {
-        sum += is_fixed[i] != 0 ? 0.0 : r[i] * r[i];
-    }
-    return std::sqrt(sum);
-}
-
-double free_dot(const VectorX& a, const VectorX& b, const std::vector<char>& is_fixed) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < a.size(); ++i) {
-        sum += is_fixed[i] != 0 ? 0.0 : a[i] * b[i];
-    }
-    return sum;
-}
-
 template <int d>
 std::string fold(const Equilibrium<d>& body) {
     const SmallestVolume<d>& at = body.smallest_volume();
@@ -50,8 +33,9 @@ std::string fold(const Equilibrium<d>& body) {
 template <int d>
 bool note_residual(const Equilibrium<d>& body, const LoadState<d>& loads,
                    const NewtonOptions& options, double floor, NewtonReport& report) {
-    const double scale = std::max(body.external_forces().norm(), body.internal_forces().norm());
-    const double size = free_norm(body.residual(), loads.constraints.is_fixed);
+    const double scale =
+        std::max(body.norm(body.external_forces()), body.norm(body.internal_forces()));
+    const double size = body.norm(body.residual(), &loads.constraints.is_fixed);
     report.residuals.push_back(scale > 0.0 ? size / scale : 0.0);
     report.min_det_F = body.smallest_volume().det_F;
     log::detail(fmt::format("newton {}: residual {:.2e}, det F >= {:.3g}", report.iterations,
@@ -89,8 +73,8 @@ NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
                 jump[i] = constraints.values(i, 0) - now(i, 0);
             }
         }
-        const bool has_jump = jump.cwiseAbs().maxCoeff() > 0.0;
-        const double size = free_norm(r, is_fixed);
+        const bool has_jump = body.largest(jump) > 0.0;
+        const double size = body.norm(r, &is_fixed);
         if (note_residual(body, loads, options, floor, report) && !has_jump) {
             displacement = body.displacement();
             report.converged = true;
@@ -101,7 +85,7 @@ NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
         }
 
         body.linearize(loads);
-        floor = rounding * body.stiffness_scale() * now.norm();
+        floor = rounding * body.stiffness_scale() * body.norm(now.col(0));
         MatrixX step;
         try {
             step = body.solve(loads, has_jump ? MatrixX(-r - body.apply(jump)) : MatrixX(-r));
@@ -109,12 +93,12 @@ NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
             return fail(error.what());
         }
         step += jump;
-        if (!step.allFinite()) {
+        if (!std::isfinite(body.norm(step.col(0)))) {
             return fail("the linear system has no finite solution");
         }
 
         const MatrixX start = now;
-        const double work = free_dot(r, step.col(0), is_fixed);
+        const double work = body.dot(r, step.col(0), &is_fixed);
         double share = 1.0;
         for (int halvings = 0;; ++halvings, share *= 0.5) {
             now = start + share * step;
@@ -129,9 +113,10 @@ NewtonReport solve_newton(Equilibrium<d>& body, const LoadState<d>& loads,
                 const VectorX trial = body.residual();
                 const double left = 1.0 - sufficient_decrease * share;
                 // Supports that move raise the residual: nothing to compare with.
-                if (has_jump || free_norm(trial, is_fixed) <= left * size ||
-                    std::abs(free_dot(trial, step.col(0), is_fixed)) <= left * std::abs(work) ||
-                    free_norm(trial, is_fixed) <= floor) {
+                const double trial_size = body.norm(trial, &is_fixed);
+                const double trial_work = body.dot(trial, step.col(0), &is_fixed);
+                if (has_jump || trial_size <= left * size ||
+                    std::abs(trial_work) <= left * std::abs(work) || trial_size <= floor) {
                     break;
                 }
             }
@@ -172,7 +157,7 @@ NewtonReport solve_arc_step(Equilibrium<d>& body, const NewtonOptions& options, 
             jump[i] = is_fixed[i] != 0 ? loads.constraints.values(i, 0) - now(i, 0) : 0.0;
         }
         if (note_residual(body, loads, options, floor, report) && !is_start &&
-            jump.cwiseAbs().maxCoeff() == 0.0) {
+            body.largest(jump) == 0.0) {
             point.t = t;
             point.direction = body.displacement() - point.displacement;
             point.time_direction = dt;
@@ -186,7 +171,7 @@ NewtonReport solve_arc_step(Equilibrium<d>& body, const NewtonOptions& options, 
         }
         // Change of loads and supports with time, at this place.
         body.linearize(loads);
-        floor = rounding * body.stiffness_scale() * now.norm();
+        floor = rounding * body.stiffness_scale() * body.norm(now.col(0));
         const double h = time_difference * std::max(length, std::abs(t));
         const LoadState<d> later = body.loads_at(t + h);
         MatrixX support_rate = (later.constraints.values - loads.constraints.values) / h;
@@ -205,29 +190,31 @@ NewtonReport solve_arc_step(Equilibrium<d>& body, const NewtonOptions& options, 
         }
         const VectorX a = solutions.col(0) + jump;
         const VectorX b = solutions.col(1) + support_rate.col(0);
-        if (!a.allFinite() || !b.allFinite() || b.norm() == 0.0) {
+        const double b_norm = body.norm(b);
+        if (!std::isfinite(body.norm(a)) || !std::isfinite(b_norm) || b_norm == 0.0) {
             return fail("the linear system has no finite solution, or nothing depends on time");
         }
         if (scale == 0.0) {
-            scale = b.norm();
+            scale = b_norm;
         }
         double step_t = 0.0;
         if (is_start) {
-            step_t = length / std::sqrt(0.5 * (b.squaredNorm() / (scale * scale) + 1.0));
+            step_t = length / std::sqrt(0.5 * (b_norm * b_norm / (scale * scale) + 1.0));
             if (point.direction.size() > 0) {
                 const MatrixX before = to_unknowns(loads.constraints, point.direction);
-                const double ahead = b.dot(before.col(0)) / (scale * scale) + point.time_direction;
+                const double ahead =
+                    body.dot(b, before.col(0)) / (scale * scale) + point.time_direction;
                 step_t = ahead < 0.0 ? -step_t : step_t;
             }
         } else {
             const VectorX moved = (now - start).col(0);
             const double gap =
-                0.5 * (moved.squaredNorm() / (scale * scale) + dt * dt) - length * length;
-            const double slope = moved.dot(b) / (scale * scale) + dt;
+                0.5 * (body.dot(moved, moved) / (scale * scale) + dt * dt) - length * length;
+            const double slope = body.dot(moved, b) / (scale * scale) + dt;
             if (slope == 0.0) {
                 return fail("the path turns back within one step");
             }
-            step_t = -(gap + moved.dot(a) / (scale * scale)) / slope;
+            step_t = -(gap + body.dot(moved, a) / (scale * scale)) / slope;
         }
         const MatrixX before = now;
         const double dt_before = dt;
