@@ -42,7 +42,7 @@ Constraints<d> constraints_on(RefinedGeometry<d>& geometry, const PieceSpace<d>&
     for (const std::string& name : names) {
         (void)geometry.geometry().boundary_set(name);
     }
-    const PieceSpace<d> layers = geometry.make_layers(names, functions);
+    const PieceSpace<d> layers = geometry.make_layers(names, functions, &pieces.functions);
     const Constraints<d> all = make_constraints(*layers.space, problem, load_cases);
     const int nc = all.n_components;
     const int n = pieces.space->n_dofs();

@@ -5,10 +5,11 @@
 
 namespace couture::iga {
 
-/// `make_constraints` of the whole, for the functions of a rank's pieces. Every rank works on the
-/// whole layers of elements beside supports, so that all agree; nothing is exchanged.
+/// `make_constraints` of the whole, for the functions of a rank's pieces. Every rank works on whole
+/// layers of elements beside the supports that it has functions of, so that all agree; nothing is
+/// exchanged.
 ///
-/// @throws InputError, TopologyError  as `make_constraints`, the same on all ranks
+/// @throws InputError, TopologyError  as `make_constraints`, on ranks that have the functions
 template <int d>
 [[nodiscard]] Constraints<d> constraints_on(RefinedGeometry<d>& geometry,
                                             const PieceSpace<d>& pieces, const Problem& problem,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "iga/spline/refine.h"
 #include "iga/topology/refined_spaces.h"
@@ -161,7 +162,20 @@ PieceSpace<d> RefinedGeometry<d>::make_space(std::vector<ElementBox<d>> boxes,
 
 template <int d>
 PieceSpace<d> RefinedGeometry<d>::make_layers(const std::set<std::string>& sets,
-                                              Functions functions) {
+                                              Functions functions,
+                                              const std::vector<FunctionKey>* near) {
+    std::unordered_set<FunctionKey> wanted;
+    if (near != nullptr) {
+        wanted.insert(near->begin(), near->end());
+    }
+    JoinedFunctions<d>& joined = kinds_[static_cast<std::size_t>(functions)].joined;
+    const auto is_wanted = [&](const PatchEntity<d>& entity) {
+        const TensorSpace<d>& space = tensor(entity.patch, functions);
+        const std::vector<int> on = functions_on<d>(space, entity.position);
+        return near == nullptr || std::any_of(on.begin(), on.end(), [&](int function) {
+                   return wanted.contains(joined.first(entity.patch, space.indices(function)));
+               });
+    };
     std::vector<ElementBox<d>> boxes;
     std::map<PatchEntity<d>, int> box_of;
     std::map<std::string, BoundarySet<d>> layers;
@@ -171,6 +185,9 @@ PieceSpace<d> RefinedGeometry<d>::make_layers(const std::set<std::string>& sets,
             continue;
         }
         for (const PatchEntity<d>& entity : entities) {
+            if (!is_wanted(entity)) {
+                continue;
+            }
             const auto [box, is_new] = box_of.try_emplace(entity, static_cast<int>(boxes.size()));
             if (is_new) {
                 const std::array<int, d> n = n_elements(entity.patch);

@@ -58,8 +58,11 @@ class RefinedGeometry {
                                            Functions functions = Functions::refined);
     /// The elements beside each entity of some boundary sets, each entity whole on a box of its
     /// own; other sets are empty there.
+    ///
+    /// @param near  only entities on which one of these functions lies; null: all
     [[nodiscard]] PieceSpace<d> make_layers(const std::set<std::string>& sets,
-                                            Functions functions = Functions::refined);
+                                            Functions functions = Functions::refined,
+                                            const std::vector<FunctionKey>* near = nullptr);
 
   private:
     struct Kind {

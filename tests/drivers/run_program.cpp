@@ -14,13 +14,13 @@ namespace couture::tests {
 namespace fs = std::filesystem;
 
 ProgramResult run_couture(const std::string& arguments, const fs::path& folder,
-                          const std::string& before) {
+                          const std::string& before, const std::string& launcher) {
     const TemporaryFolder logs;
     const fs::path output = logs.path() / "output";
     const fs::path errors = logs.path() / "errors";
     const std::string command =
-        fmt::format("exec >'{}' 2>'{}' </dev/null; cd '{}'; {}; '{}' {}", output.string(),
-                    errors.string(), folder.string(), before, COUTURE_PROGRAM, arguments);
+        fmt::format("exec >'{}' 2>'{}' </dev/null; cd '{}'; {}; {} '{}' {}", output.string(),
+                    errors.string(), folder.string(), before, launcher, COUTURE_PROGRAM, arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), io::read_text(output),
             io::read_text(errors)};
