@@ -311,6 +311,9 @@ Constraints<d> make_constraints(const Space<d>& space, const Problem& problem,
         const auto apply = [&](const BoundarySet<d>& set, const Vector<d>& direction,
                                const Function& function) {
             const std::vector<int> dofs = dofs_of_set(space, set);
+            if (dofs.empty()) {
+                return;  // a part of a body that the set does not reach
+            }
             const VectorX value = Projection<d>(space, positions, function).on(set, dofs);
             largest_value = std::max(largest_value, value.cwiseAbs().maxCoeff());
             for (std::size_t i = 0; i < dofs.size(); ++i) {
