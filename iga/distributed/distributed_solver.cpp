@@ -242,7 +242,7 @@ void DistributedSolver::prepare(const DistributedSystem& system, const MatrixFre
         PC smoother_pc = nullptr;
         check_petsc(KSPGetPC(smoother, &smoother_pc));
         check_petsc(PCSetType(smoother_pc, PCJACOBI));
-        constexpr int n_smoothing_steps = 4;
+        constexpr int n_smoothing_steps = 2;
         check_petsc(PCMGSetNumberSmooth(pc, n_smoothing_steps));
         KSP coarse_solver = nullptr;
         check_petsc(PCMGGetCoarseSolve(pc, &coarse_solver));
