@@ -62,10 +62,13 @@ MatrixX DistributedBody<d>::complete(const MatrixX& share) const {
 }
 
 template <int d>
-MatrixX DistributedBody<d>::solve(const BlockMatrix& share, const std::vector<char>& is_fixed,
-                                  const MatrixX& motions, const MatrixX& b) {
+MatrixX DistributedBody<d>::solve(const BlockMatrix& share, const SparseMatrix& skew,
+                                  const std::vector<char>& is_fixed, const MatrixX& motions,
+                                  const MatrixX& b) {
+    const bool is_symmetric = ranks_.sum(static_cast<std::int64_t>(skew.nonZeros())) == 0;
     DistributedSolver solver(ranks_, solver_);
-    solver.factorize({space_.numbers, d, &share, is_fixed, motions});
+    solver.factorize(
+        {space_.numbers, d, &share, is_fixed, motions, is_symmetric ? nullptr : &skew});
     MatrixX x;
     (void)solver.solve(weights_.asDiagonal() * b, x);
     return x;

@@ -23,8 +23,9 @@ class DistributedBody final : public BodyShare<d> {
     [[nodiscard]] const VectorX& weights() const override { return weights_; }
     [[nodiscard]] double sum(double value) const override { return ranks_.sum(value); }
     [[nodiscard]] double max(double value) const override { return ranks_.max(value); }
-    [[nodiscard]] MatrixX solve(const BlockMatrix& share, const std::vector<char>& is_fixed,
-                                const MatrixX& motions, const MatrixX& b) override;
+    [[nodiscard]] MatrixX solve(const BlockMatrix& share, const SparseMatrix& skew,
+                                const std::vector<char>& is_fixed, const MatrixX& motions,
+                                const MatrixX& b) override;
 
   private:
     const Communicator& ranks_;

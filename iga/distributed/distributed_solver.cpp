@@ -45,6 +45,10 @@ void assemble_rows(const DistributedSystem& system, PetscMatrix& result) {
     const SharedNumbers& numbers = system.numbers;
     const int bs = system.n_components;
     RowMatrix rows = rows_for_petsc(*system.matrix, system.is_fixed);
+    if (system.skew != nullptr) {
+        rows += RowMatrix(*system.skew);
+        rows.makeCompressed();
+    }
     ISLocalToGlobalMapping mapping = nullptr;
     check_petsc(ISLocalToGlobalMappingCreate(PETSC_COMM_WORLD, bs, numbers.n_local(),
                                              numbers.numbers().data(), PETSC_COPY_VALUES,
@@ -65,7 +69,7 @@ void assemble_rows(const DistributedSystem& system, PetscMatrix& result) {
     check_petsc(MatConvert(shares.A, MATAIJ, MAT_INITIAL_MATRIX, &result.A));
     check_petsc(ISLocalToGlobalMappingDestroy(&mapping));
     check_petsc(MatSetBlockSize(result.A, bs));
-    if (system.matrix->is_symmetric) {
+    if (system.skew == nullptr) {
         check_petsc(MatSetOption(result.A, MAT_SPD, PETSC_TRUE));
     }
     MatrixX motions(n_owned, system.near_null_space.cols());
@@ -190,7 +194,7 @@ void DistributedSolver::factorize(const DistributedSystem& system) {
     const PetscSession session(parts_->krylov.petsc_options());
     MatDestroy(&parts_->A.A);
     assemble_rows(system, parts_->A);
-    parts_->krylov.set_up(parts_->A.A, system.matrix->is_symmetric);
+    parts_->krylov.set_up(parts_->A.A, system.skew == nullptr);
 }
 
 void DistributedSolver::prepare(const DistributedSystem& system, const MatrixFreeLevels& levels) {

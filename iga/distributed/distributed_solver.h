@@ -19,6 +19,8 @@ struct DistributedSystem {
     std::vector<char> is_fixed;
     /// Unknowns x motions without energy; may be empty.
     MatrixX near_null_space;
+    /// Added to the matrix, between free unknowns; null on all ranks: A is symmetric.
+    const SparseMatrix* skew = nullptr;
 };
 
 /// A system whose matrix is not formed, preconditioned by one on coarser functions.

@@ -32,10 +32,13 @@ class BodyShare {
 
     /// Solves with the sum of the shares for complete columns; zero at fixed unknowns.
     ///
+    /// @param skew  share of what makes the matrix unsymmetric, between free unknowns; may be empty
+    ///              on all
     /// @param motions  unknowns x motions without energy, in the frames
     /// @throws SolverError  if that fails, on all
-    [[nodiscard]] virtual MatrixX solve(const BlockMatrix& share, const std::vector<char>& is_fixed,
-                                        const MatrixX& motions, const MatrixX& b) = 0;
+    [[nodiscard]] virtual MatrixX solve(const BlockMatrix& share, const SparseMatrix& skew,
+                                        const std::vector<char>& is_fixed, const MatrixX& motions,
+                                        const MatrixX& b) = 0;
 };
 
 }  // namespace couture::iga

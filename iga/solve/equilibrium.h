@@ -89,8 +89,8 @@ class Equilibrium {
     [[nodiscard]] BlockMatrix extended_matrix() const;
     /// Columns from shares, where there are several processes.
     [[nodiscard]] MatrixX complete(MatrixX share) const;
-    /// @throws SolverError  if antisymmetric parts of several processes do not cancel
-    void require_symmetric(const LoadState<d>& loads) const;
+    /// Whether antisymmetric parts of several processes cancel.
+    [[nodiscard]] bool is_symmetric_in_all(const LoadState<d>& loads) const;
 
     ReferencePtr<d> reference_;
     SpacePtr<d> undeformed_;

@@ -150,6 +150,18 @@ TEST_CASE("ranks: a hyperelastic run, stopped and resumed", "[ranks]") {
     CHECK_THAT(other.errors, Catch::Contains("rank"));
 }
 
+TEST_CASE("ranks: a pressure that follows the body", "[ranks]") {
+    if (!has_mpirun()) {
+        return;
+    }
+    const TemporaryFolder folder;
+    const std::string deck = deck_path("solve_inflated_tube") + " --json --quiet";
+    const Json one = summary_of(run_couture("solve " + deck, folder.path()));
+    const Json three = summary_of(run_on_ranks(3, "solve " + deck, folder.path()));
+    CHECK(one["steps"] == three["steps"]);
+    check_equal_results(one, three, 1e-6);
+}
+
 TEST_CASE("ranks: pieces of the fields make the whole", "[ranks]") {
     if (!has_mpirun()) {
         return;
