@@ -13,12 +13,17 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Feature corners and curves take nodes that are nearer than this part of the node's shortest arc.
 constexpr double reach = 0.7;
+// A feature's end takes a node from this part of the arc's length that leads along it.
+constexpr double end_reach = 0.4;
 // Angle between the quads of an arc from which it counts as sharp.
 constexpr double sharp_angle = std::numbers::pi / 9.0;
 // An arc follows features if that is at most so many times as long as the straight line.
 constexpr double longest_detour = 1.8;
 // Of the box's diagonal: edges of the surface that arcs can run along.
 constexpr double edge_part = 1.0 / 60.0;
+
+// Of the box's diagonal: what lies no farther apart is at the same place.
+constexpr double same_place = 1e-9;
 
 // Distance of a feature from a node, node, vertex of the feature.
 using Offer = std::tuple<double, int, int>;
@@ -80,6 +85,16 @@ void draw_along_features(const SurfaceMesh& mesh, const QuadLayout& layout,
     }
 }
 
+// Arcs that are not drawn but have both nodes in place.
+std::vector<int> arcs_in_place(const QuadLayout& layout, const ArcPaths& paths) {
+    std::vector<int> arcs;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        const auto [from, to] = layout.arcs()[a];
+        if (!paths.is_drawn()[a] && paths.is_placed(from) && paths.is_placed(to)) arcs.push_back(a);
+    }
+    return arcs;
+}
+
 // Places nodes on features.
 class FeatureNodes {
   public:
@@ -90,6 +105,7 @@ class FeatureNodes {
           positions_(positions),
           paths_(paths),
           normals_(node_normals(layout, positions)),
+          size_(bounding_box_diagonal(mesh)),
           reach_(layout.n_nodes(), most_reach),
           n_sharp_(layout.n_nodes(), 0),
           valences_(layout.valences()) {
@@ -128,8 +144,10 @@ class FeatureNodes {
         for (const auto vertex : mesh_.vertices()) {
             if (n_feature_edges(mesh_, vertex) != 2 || paths_.has_node(vertex)) continue;
             for (int node = 0; node < layout_.n_nodes(); ++node) {
-                if (n_sharp_[node] < 2 || paths_.is_placed(node)) continue;
+                if (paths_.is_placed(node)) continue;
                 const double d = distance(node, vertex);
+                // Nodes that lie on a curve stay there.
+                if (n_sharp_[node] < 2 && d > same_place * size_) continue;
                 if (d > reach_[node] || !is_same_side(node, vertex)) continue;
                 offers.emplace_back(d, node, vertex.idx());
             }
@@ -137,7 +155,38 @@ class FeatureNodes {
         place_nearest(std::move(offers));
     }
 
+    // On ends of features that the arc from a node in place leads to: the other node is near, by
+    // the length of the arc, but not within reach.
+    void place_on_ends(const Features& features) {
+        std::vector<Offer> offers;
+        for (const VertexHandle corner : features.corners) {
+            if (paths_.has_node(corner)) continue;
+            for (int a = 0; a < layout_.n_arcs(); ++a) {
+                const auto [from, to] = layout_.arcs()[a];
+                for (const auto& [node, other] : {std::pair(from, to), std::pair(to, from)}) {
+                    if (paths_.is_placed(node) || !paths_.is_placed(other)) continue;
+                    const double d = distance(node, corner);
+                    const double length = (positions_[from] - positions_[to]).norm();
+                    if (d > end_reach * length || !is_same_side(node, corner)) continue;
+                    if (leads_to(a, other, corner)) offers.emplace_back(d, node, corner.idx());
+                }
+            }
+        }
+        place_nearest(std::move(offers));
+    }
+
   private:
+    // Whether features lead an arc from a node in place to a vertex.
+    [[nodiscard]] bool leads_to(int arc, int node, VertexHandle end) const {
+        const auto is_feature = [&](HalfedgeHandle h) {
+            return mesh_.data(mesh_.edge_handle(h)).feature >= 0;
+        };
+        const Vector3& start = mesh_.point(paths_.vertex(node));
+        const ArcPaths::Path path =
+            paths_.find(arc, node, end, is_feature, cost_near_line(mesh_, start, mesh_.point(end)));
+        return path.length <= longest_detour * (mesh_.point(end) - start).norm();
+    }
+
     [[nodiscard]] double distance(int node, VertexHandle vertex) const {
         return (mesh_.point(vertex) - positions_[node]).norm();
     }
@@ -161,6 +210,7 @@ class FeatureNodes {
     const std::vector<Vector3>& positions_;
     ArcPaths& paths_;
     std::vector<Vector3> normals_;
+    double size_;
     // How far from a node features may lie that it is placed on.
     std::vector<double> reach_;
     // Sharp arcs of each node.
@@ -179,12 +229,9 @@ std::vector<LayoutTie> tie_features(SurfaceMesh& mesh, const Features& features,
     FeatureNodes nodes(mesh, layout, positions, std::max(most_reach, longest_edge), paths);
     nodes.place_on_corners(features);
     nodes.place_on_curves();
-    std::vector<int> arcs;
-    for (int a = 0; a < layout.n_arcs(); ++a) {
-        const auto [from, to] = layout.arcs()[a];
-        if (paths.is_placed(from) && paths.is_placed(to)) arcs.push_back(a);
-    }
-    draw_along_features(mesh, layout, arcs, paths);
+    draw_along_features(mesh, layout, arcs_in_place(layout, paths), paths);
+    nodes.place_on_ends(features);
+    draw_along_features(mesh, layout, arcs_in_place(layout, paths), paths);
     return paths.take_ties();
 }
 
