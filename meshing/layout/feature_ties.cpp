@@ -13,8 +13,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Feature corners and curves take nodes that are nearer than this part of the node's shortest arc.
 constexpr double reach = 0.7;
-// A feature's end takes a node from this part of the arc's length that leads along it.
-constexpr double end_reach = 0.4;
 // Angle between the quads of an arc from which it counts as sharp.
 constexpr double sharp_angle = std::numbers::pi / 9.0;
 // An arc follows features if that is at most so many times as long as the straight line.
@@ -85,16 +83,6 @@ void draw_along_features(const SurfaceMesh& mesh, const QuadLayout& layout,
     }
 }
 
-// Arcs that are not drawn but have both nodes in place.
-std::vector<int> arcs_in_place(const QuadLayout& layout, const ArcPaths& paths) {
-    std::vector<int> arcs;
-    for (int a = 0; a < layout.n_arcs(); ++a) {
-        const auto [from, to] = layout.arcs()[a];
-        if (!paths.is_drawn()[a] && paths.is_placed(from) && paths.is_placed(to)) arcs.push_back(a);
-    }
-    return arcs;
-}
-
 // Places nodes on features.
 class FeatureNodes {
   public:
@@ -155,38 +143,7 @@ class FeatureNodes {
         place_nearest(std::move(offers));
     }
 
-    // On ends of features that the arc from a node in place leads to: the other node is near, by
-    // the length of the arc, but not within reach.
-    void place_on_ends(const Features& features) {
-        std::vector<Offer> offers;
-        for (const VertexHandle corner : features.corners) {
-            if (paths_.has_node(corner)) continue;
-            for (int a = 0; a < layout_.n_arcs(); ++a) {
-                const auto [from, to] = layout_.arcs()[a];
-                for (const auto& [node, other] : {std::pair(from, to), std::pair(to, from)}) {
-                    if (paths_.is_placed(node) || !paths_.is_placed(other)) continue;
-                    const double d = distance(node, corner);
-                    const double length = (positions_[from] - positions_[to]).norm();
-                    if (d > end_reach * length || !is_same_side(node, corner)) continue;
-                    if (leads_to(a, other, corner)) offers.emplace_back(d, node, corner.idx());
-                }
-            }
-        }
-        place_nearest(std::move(offers));
-    }
-
   private:
-    // Whether features lead an arc from a node in place to a vertex.
-    [[nodiscard]] bool leads_to(int arc, int node, VertexHandle end) const {
-        const auto is_feature = [&](HalfedgeHandle h) {
-            return mesh_.data(mesh_.edge_handle(h)).feature >= 0;
-        };
-        const Vector3& start = mesh_.point(paths_.vertex(node));
-        const ArcPaths::Path path =
-            paths_.find(arc, node, end, is_feature, cost_near_line(mesh_, start, mesh_.point(end)));
-        return path.length <= longest_detour * (mesh_.point(end) - start).norm();
-    }
-
     [[nodiscard]] double distance(int node, VertexHandle vertex) const {
         return (mesh_.point(vertex) - positions_[node]).norm();
     }
@@ -229,9 +186,12 @@ std::vector<LayoutTie> tie_features(SurfaceMesh& mesh, const Features& features,
     FeatureNodes nodes(mesh, layout, positions, std::max(most_reach, longest_edge), paths);
     nodes.place_on_corners(features);
     nodes.place_on_curves();
-    draw_along_features(mesh, layout, arcs_in_place(layout, paths), paths);
-    nodes.place_on_ends(features);
-    draw_along_features(mesh, layout, arcs_in_place(layout, paths), paths);
+    std::vector<int> arcs;
+    for (int a = 0; a < layout.n_arcs(); ++a) {
+        const auto [from, to] = layout.arcs()[a];
+        if (paths.is_placed(from) && paths.is_placed(to)) arcs.push_back(a);
+    }
+    draw_along_features(mesh, layout, arcs, paths);
     return paths.take_ties();
 }
 

@@ -12,9 +12,7 @@ namespace couture::meshing {
 /// Feature corners take the nearest nodes, one to one, within seven tenths of the node's shortest
 /// arc; then nodes with two or more sharp arcs that are as near to a feature curve lie on it, and
 /// arcs between nodes on features follow these where the way is at most 1.8 times as long as the
-/// straight line. Last, where features lead such an arc to a corner or to where they end, that
-/// takes the arc's other node from within four tenths of its length. Nodes that lie on a curve stay
-/// on it.
+/// straight line. Nodes that lie on a curve stay on it.
 ///
 /// @param mesh        with numbers of features on its edges; long edges are split
 /// @param layout      the boundary of a volumetric one

@@ -167,7 +167,7 @@ EdgePaths paths_of_ties(const SurfaceMesh& mesh, const std::vector<LayoutTie>& t
 }
 
 // Divides sheets of cuboids that features cross from end to end, so that arcs run along these too,
-// as often as that makes more of them drawn.
+// as often as that makes much more of them drawn.
 void divide_at_features(SurfaceMesh& mesh, const Features& features, double most_reach,
                         TiedLayout& tied) {
     constexpr int max_rounds = 4;
@@ -183,7 +183,9 @@ void divide_at_features(SurfaceMesh& mesh, const Features& features, double most
         if (places.empty()) return;
         PlacedLayout divided_layout = divide_sheets(placed, places, paths_of_ties(mesh, tied.ties));
         TiedLayout divided = tie_layout(mesh, features, std::move(divided_layout), most_reach);
-        if (drawn_length(mesh, divided) <= drawn_length(mesh, tied)) return;
+        // More cuboids are thinner ones: they must be worth it.
+        constexpr double least_gain = 0.05;
+        if (drawn_length(mesh, divided) < (1.0 + least_gain) * drawn_length(mesh, tied)) return;
         tied = std::move(divided);
     }
 }

@@ -20,10 +20,10 @@ struct PlaceLayoutOptions {
 /// cuboids are better.
 ///
 /// Arcs that lie near features are tied to these (tie_features). Sheets that other features cross
-/// are divided there (feature_crossings, divide_sheets), as long as more of the features have arcs
-/// then. Then it is padded and more arcs are drawn where the surface is not cut into discs yet
-/// (cut_into_discs). The remaining arcs are those of embed_layout. A feature along which no arc
-/// runs is treated as smooth, see untied_length.
+/// are divided there (feature_crossings, divide_sheets), as long as features with arcs are a
+/// twentieth longer then. Then it is padded and more arcs are drawn where the surface is not cut
+/// into discs yet (cut_into_discs). The remaining arcs are those of embed_layout. A feature along
+/// which no arc runs is treated as smooth, see untied_length.
 ///
 /// @param mesh      closed, with numbers of features on its edges
 /// @param features  its own
