@@ -381,7 +381,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
         solid.progress("placing the layout");
         SurfaceMesh mesh = stages.mesh;
         const OwnLayout own = read_own_layout(deck, mesh, stages.features, surface.landmarks);
-        run_solid(place_layout(mesh, stages.features, own.placed, own.most_reach));
+        run_solid(place_layout(mesh, stages.features, own.placed, own.options));
         return;
     }
     std::optional<ClosingCaps> caps = surface.caps;

@@ -33,7 +33,7 @@ OwnLayout read_own_layout(const io::MeshDeck& deck, SurfaceMesh& mesh, const Fea
     const double tolerance =
         layout.tolerance.value_or(relative_tolerance * bounding_box_diagonal(mesh));
     return {snap_nodes(mesh, features, layout.placed, layout.placed.layout.node_names, tolerance),
-            tolerance};
+            {.most_reach = tolerance, .divides_sheets = false}};
 }
 
 }  // namespace couture::drivers

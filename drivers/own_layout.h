@@ -1,10 +1,9 @@
 #pragma once
 
-#include <limits>
-
 #include "drivers/prepared_surface.h"
 #include "io/mesh_deck.h"
 #include "meshing/layout/cuboid_template.h"
+#include "meshing/layout/place_layout.h"
 #include "meshing/layout/volumetric_layout.h"
 
 namespace couture::drivers {
@@ -19,8 +18,8 @@ struct OwnLayout {
     /// Of one that is written by hand the nodes of the boundary lie on the surface, at features
     /// where these are near.
     meshing::PlacedLayout placed;
-    /// No node moves farther to a feature.
-    double most_reach = std::numeric_limits<double>::infinity();
+    /// One that is written by hand keeps the cuboids that it has.
+    meshing::PlaceLayoutOptions options = {};
 };
 
 /// @param mesh       gets vertices where nodes come to feature curves (meshing::snap_nodes)

@@ -20,6 +20,9 @@ constexpr double longest_detour = 1.8;
 // Of the box's diagonal: edges of the surface that arcs can run along.
 constexpr double edge_part = 1.0 / 60.0;
 
+// Of the box's diagonal: what lies no farther apart is at the same place.
+constexpr double same_place = 1e-9;
+
 // Distance of a feature from a node, node, vertex of the feature.
 using Offer = std::tuple<double, int, int>;
 
@@ -90,6 +93,7 @@ class FeatureNodes {
           positions_(positions),
           paths_(paths),
           normals_(node_normals(layout, positions)),
+          size_(bounding_box_diagonal(mesh)),
           reach_(layout.n_nodes(), most_reach),
           n_sharp_(layout.n_nodes(), 0),
           valences_(layout.valences()) {
@@ -128,8 +132,10 @@ class FeatureNodes {
         for (const auto vertex : mesh_.vertices()) {
             if (n_feature_edges(mesh_, vertex) != 2 || paths_.has_node(vertex)) continue;
             for (int node = 0; node < layout_.n_nodes(); ++node) {
-                if (n_sharp_[node] < 2 || paths_.is_placed(node)) continue;
+                if (paths_.is_placed(node)) continue;
                 const double d = distance(node, vertex);
+                // Nodes that lie on a curve stay there.
+                if (n_sharp_[node] < 2 && d > same_place * size_) continue;
                 if (d > reach_[node] || !is_same_side(node, vertex)) continue;
                 offers.emplace_back(d, node, vertex.idx());
             }
@@ -161,6 +167,7 @@ class FeatureNodes {
     const std::vector<Vector3>& positions_;
     ArcPaths& paths_;
     std::vector<Vector3> normals_;
+    double size_;
     // How far from a node features may lie that it is placed on.
     std::vector<double> reach_;
     // Sharp arcs of each node.

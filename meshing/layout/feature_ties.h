@@ -12,7 +12,7 @@ namespace couture::meshing {
 /// Feature corners take the nearest nodes, one to one, within seven tenths of the node's shortest
 /// arc; then nodes with two or more sharp arcs that are as near to a feature curve lie on it, and
 /// arcs between nodes on features follow these where the way is at most 1.8 times as long as the
-/// straight line.
+/// straight line. Nodes that lie on a curve stay on it.
 ///
 /// @param mesh        with numbers of features on its edges; long edges are split
 /// @param layout      the boundary of a volumetric one

@@ -8,6 +8,7 @@
 
 #include "iga/core/error.h"
 #include "meshing/layout/disc_cuts.h"
+#include "meshing/layout/feature_crossings.h"
 #include "meshing/layout/feature_ties.h"
 #include "meshing/layout/padded_ties.h"
 #include "meshing/layout/tied_nodes.h"
@@ -131,10 +132,68 @@ std::vector<double> wanted_lengths(const CuboidDecomposition& drawn,
     return lengths;
 }
 
+// A layout with the arcs that run along features.
+struct TiedLayout {
+    PlacedLayout placed;
+    LayoutBoundary boundary;
+    std::vector<LayoutTie> ties;
+};
+
+TiedLayout tie_layout(SurfaceMesh& mesh, const Features& features, PlacedLayout placed,
+                      double most_reach) {
+    TiedLayout tied{std::move(placed), {}, {}};
+    tied.boundary = layout_boundary(tied.placed.layout);
+    tied.ties =
+        tie_features(mesh, features, tied.boundary.layout, tied.placed.positions, most_reach);
+    return tied;
+}
+
+double drawn_length(const SurfaceMesh& mesh, const TiedLayout& tied) {
+    double length = 0.0;
+    for (const LayoutTie& tie : tied.ties) length += path_length(mesh, tie.vertices);
+    return length;
+}
+
+// Points along the arcs that run along features.
+EdgePaths paths_of_ties(const SurfaceMesh& mesh, const std::vector<LayoutTie>& ties) {
+    EdgePaths paths;
+    for (const LayoutTie& tie : ties) {
+        const auto [from, to] = std::minmax(tie.nodes.front(), tie.nodes.back());
+        std::vector<Vector3>& path = paths[{from, to}];
+        for (const VertexHandle vertex : tie.vertices) path.push_back(mesh.point(vertex));
+        if (from != tie.nodes.front()) std::ranges::reverse(path);
+    }
+    return paths;
+}
+
+// Divides sheets of cuboids that features cross from end to end, so that arcs run along these too,
+// as often as that makes much more of them drawn.
+void divide_at_features(SurfaceMesh& mesh, const Features& features, double most_reach,
+                        TiedLayout& tied) {
+    constexpr int max_rounds = 4;
+    for (int round = 0; round < max_rounds && !tied.ties.empty(); ++round) {
+        // Nodes keep their places on features.
+        PlacedLayout placed = tied.placed;
+        for (const LayoutTie& tie : tied.ties) {
+            placed.positions[tie.nodes.front()] = mesh.point(tie.vertices.front());
+            placed.positions[tie.nodes.back()] = mesh.point(tie.vertices.back());
+        }
+        const EdgePlaces places =
+            feature_crossings(mesh, tied.boundary.layout, placed.positions, tied.ties);
+        if (places.empty()) return;
+        PlacedLayout divided_layout = divide_sheets(placed, places, paths_of_ties(mesh, tied.ties));
+        TiedLayout divided = tie_layout(mesh, features, std::move(divided_layout), most_reach);
+        // More cuboids are thinner ones: they must be worth it.
+        constexpr double least_gain = 0.05;
+        if (drawn_length(mesh, divided) < (1.0 + least_gain) * drawn_length(mesh, tied)) return;
+        tied = std::move(divided);
+    }
+}
+
 }  // namespace
 
 CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& features,
-                                 const PlacedLayout& placed, double most_reach) {
+                                 const PlacedLayout& placed, const PlaceLayoutOptions& options) {
     const LayoutBoundary boundary = layout_boundary(placed.layout);
     const int chi = static_cast<int>(mesh.n_vertices()) - static_cast<int>(mesh.n_edges()) +
                     static_cast<int>(mesh.n_faces());
@@ -147,19 +206,21 @@ CuboidDecomposition place_layout(const SurfaceMesh& mesh, const Features& featur
     check_right_handed(boundary.layout, placed.positions);
     CuboidDecomposition result;
     result.mesh = mesh;
-    std::vector<LayoutTie> feature_ties =
-        tie_features(result.mesh, features, boundary.layout, placed.positions, most_reach);
-    if (feature_ties.empty()) check_is_near(result.mesh, boundary.layout, placed.positions);
+    TiedLayout tied = tie_layout(result.mesh, features, placed, options.most_reach);
+    if (tied.ties.empty()) check_is_near(result.mesh, boundary.layout, placed.positions);
+    if (options.divides_sheets) {
+        divide_at_features(result.mesh, features, options.most_reach, tied);
+    }
     // Nodes on features stay: on a closed curve nothing else keeps them from turning away from
     // those of the other side of a wall.
     std::set<VertexHandle> held;
-    for (const LayoutTie& tie : feature_ties) {
+    for (const LayoutTie& tie : tied.ties) {
         held.insert({tie.vertices.front(), tie.vertices.back()});
     }
-    PaddedTies padded = pad_with_ties(placed.layout, std::move(feature_ties));
+    PaddedTies padded = pad_with_ties(tied.placed.layout, std::move(tied.ties));
     const QuadLayout outside = layout_boundary(padded.volume).layout;
     const std::vector<Vector3> positions =
-        padded_positions(placed.positions, padded.node_in_place, outside);
+        padded_positions(tied.placed.positions, padded.node_in_place, outside);
     const std::vector<LayoutTie> ties =
         complete_ties(result.mesh, outside, positions, std::move(padded.ties));
     draw_decomposition(std::move(padded.volume), ties, result);

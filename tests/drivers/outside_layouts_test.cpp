@@ -53,6 +53,8 @@ TEST_CASE("mesh: outside layouts become valid volumes of better elements", "[dri
     CHECK(ours.at("volume").at("mean_scaled_jacobian") > theirs.at("mean_scaled_jacobian"));
     CHECK(ours.at("volume").at("min_scaled_jacobian") > theirs.at("min_scaled_jacobian"));
     CHECK(ours.at("volume").at("min_scaled_jacobian") > 0.2);
+    // Arcs run along all its sharp edges where cuboids are divided; without, 5.8e-3.
+    if (name == "hepta") CHECK(ours.at("volume").at("hausdorff") < 2e-3);
     CHECK(fs::exists(folder.path() / "o" / ("mesh_" + name + "_volume.png")));
 }
 

@@ -1,8 +1,10 @@
 #include "meshing/layout/place_layout.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "iga/core/error.h"
 #include "meshing/parts/part_surface.h"
@@ -132,6 +134,60 @@ TEST_CASE("place_layout: a smooth ball and a smooth ring are cut open along arcs
     const SolidMesh solid = mesh_solid(cuboids, options);
     CHECK(solid.volume->report.parameterization.validity == iga::Validity::valid);
     CHECK(solid.volume->report.quality.min_scaled_jacobian > 0.5);
+}
+
+namespace {
+
+// A bar of length 100 along z whose section is a square of side 100 with a corner cut off, and one
+// cuboid in it, an edge of which lies along one side of the cut.
+struct CutBar {
+    SurfaceMesh mesh;
+    Features features;
+    PlacedLayout placed;
+};
+
+CutBar cut_bar() {
+    TriangleSoup soup;
+    const std::array<Vector3, 5> section = {Vector3(0, 0, 0), Vector3(100, 0, 0),
+                                            Vector3(100, 80, 0), Vector3(80, 100, 0),
+                                            Vector3(0, 100, 0)};
+    for (const Vector3& x : section) soup.points.push_back(x);
+    for (const Vector3& x : section) soup.points.push_back(x + Vector3(0, 0, 100));
+    for (int k = 1; k < 4; ++k) {
+        soup.triangles.push_back({0, k + 1, k});
+        soup.triangles.push_back({5, 5 + k, 6 + k});
+    }
+    for (int k = 0; k < 5; ++k) {
+        const int next = (k + 1) % 5;
+        soup.triangles.push_back({k, next, 5 + next});
+        soup.triangles.push_back({k, 5 + next, 5 + k});
+    }
+    CutBar bar{make_surface_mesh(soup), {}, {}};
+    bar.features = detect_features(bar.mesh);
+    bar.placed.layout.n_nodes = 8;
+    bar.placed.layout.cuboids = {{0, 1, 2, 3, 4, 5, 6, 7}};
+    for (const int z : {0, 100}) {
+        for (const auto& [x, y] : {std::pair(0, 0), {100, 0}, {0, 100}, {100, 80}}) {
+            bar.placed.positions.emplace_back(x, y, z);
+        }
+    }
+    return bar;
+}
+
+}  // namespace
+
+TEST_CASE("place_layout: cuboids are divided where a sharp edge crosses them", "[layout]") {
+    const CutBar bar = cut_bar();
+    const CuboidDecomposition cuboids = place_layout(bar.mesh, bar.features, bar.placed);
+    // Two, and padding at the blunt edges.
+    CHECK(cuboids.volume.n_cuboids() == 5);
+    CHECK(untied_length(cuboids) == 0.0);
+    SolidMeshOptions options;
+    options.element_size = 25.0;
+    const SolidMesh solid = mesh_solid(cuboids, options);
+    CHECK(solid.volume->report.parameterization.validity == iga::Validity::valid);
+    // Planes and straight edges.
+    CHECK(solid.distance->surface < 1e-9);
 }
 
 TEST_CASE("place_layout: an outside layout far from a smooth surface is refused", "[layout]") {
