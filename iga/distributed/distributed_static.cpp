@@ -9,8 +9,10 @@
 #include "iga/assembly/loads.h"
 #include "iga/core/error.h"
 #include "iga/core/log.h"
+#include "iga/core/timer.h"
 #include "iga/distributed/distributed_constraints.h"
 #include "iga/distributed/distributed_solver.h"
+#include "iga/solve/matrix_free_system.h"
 #include "iga/solve/static_system.h"
 
 namespace couture::iga {
@@ -23,6 +25,23 @@ Vector3 middle_of(const MultiPatch<d>& geometry) {
     const MatrixX box = geometry.bounding_box();
     middle.head(box.rows()) = 0.5 * (box.col(0) + box.col(1));
     return middle;
+}
+
+/// @param share  bytes of one triangle of this rank's matrix
+/// @throws SolverError  if as much as that for all ranks of this machine would not fit
+void require_memory(std::size_t share, int n_ranks_here, int n_unknowns) {
+    // The share, rows of both triangles, and those of multigrid: measured, see scaling.md.
+    constexpr double copies = 9.0;
+    constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+    const double needed = copies * static_cast<double>(share) * n_ranks_here;
+    const auto free = static_cast<double>(available_memory());
+    if (needed > free) {
+        throw SolverError(
+            "the matrix of {} unknowns and its multigrid would take about {:.1f} GiB on this "
+            "machine's {} ranks, {:.1f} GiB are free; take linear = \"matrix_free\", more "
+            "machines or fewer elements",
+            n_unknowns, needed / gibibyte, n_ranks_here, free / gibibyte);
+    }
 }
 
 /// A rank's share of the equations on one kind of functions.
@@ -212,6 +231,13 @@ LinearStaticResult<d> solve_linear_static(const Communicator& ranks, RefinedGeom
     }
     result.n_elements = static_cast<int>(ranks.sum(n_elements));
     result.n_unknowns = numbers.n_global() * nc;
+
+    const int n_here = ranks.size_here();
+    ranks.together([&] {
+        if (name != "matrix_free") {
+            require_memory(matrix_memory(*pieces.space, nc), n_here, result.n_unknowns);
+        }
+    });
 
     std::optional<Equations<d>> equations;
     MatrixX f(static_cast<Eigen::Index>(numbers.n_local()) * nc, n_cases);
