@@ -221,6 +221,15 @@ TEST_CASE("couture bench: every line has a time and a share of the machine", "[d
     for (const Json& row : numbers["solution"]) {
         CHECK(row["residual"] <= 1e-8);
     }
+    // None where there is no mpirun.
+    for (const Json& row : numbers["ranks"]) {
+        CHECK(row["iterations"] > 0);
+        CHECK(row["solve_seconds"] > 0.0);
+        const int n_ranks = row["ranks"];
+        CHECK(row["unknowns_of_rank"].get<double>() <
+              1.5 * row["unknowns"].get<double>() / n_ranks);
+        CHECK((row["bytes_sent"] > 0.0) == (n_ranks > 1));
+    }
     CHECK(numbers["cutting"].size() == 3);
     for (const Json& row : numbers["cutting"]) {
         CHECK(row["triangles"] > 1000);
