@@ -74,9 +74,12 @@ double most(const nlohmann::json& ranks, const char* key) {
 RankRow measure(const fs::path& folder, const RankRow& asked) {
     log::info(fmt::format("{} scaling: {}, p{} n{}, {} ranks", asked.task, asked.solver,
                           asked.degree, asked.n_elements, asked.n_ranks));
-    // Roots of containers are refused by Open MPI unless told so.
+    // MPI that was started in this process (petsc) leaves traces that a new mpirun stumbles over;
+    // roots of containers are refused by Open MPI unless told so.
     const std::string command = fmt::format(
-        "cd '{0}' && export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 && "
+        "cd '{0}' && "
+        "for v in $(env | sed -n 's/^\\(OMPI_[^=]*\\|PMIX_[^=]*\\|ORTE_[^=]*\\)=.*/\\1/p'); "
+        "do unset $v; done; export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 && "
         "mpirun --oversubscribe -n {1} '{2}' solve tee.toml --quiet --out out "
         "--set solver.linear={3} --set solver.tolerance=1e-8 --set discretization.degree={4} "
         "--set discretization.elements={5} >log 2>&1",

@@ -263,11 +263,17 @@ SolveReport DistributedSolver::solve(const MatrixX& b, MatrixX& x) {
     report.solver = parts_->name;
     const SharedNumbers& numbers = *parts_->numbers;
     const int n = parts_->n_components;
+    std::vector<char> owned_is_fixed;
+    for (const int function : numbers.owned()) {
+        for (int a = 0; a < n && !parts_->is_fixed.empty(); ++a) {
+            owned_is_fixed.push_back(parts_->is_fixed[static_cast<std::size_t>(function) * n + a]);
+        }
+    }
     x = MatrixX::Zero(b.rows(), b.cols());
     for (Eigen::Index k = 0; k < b.cols(); ++k) {
         const VectorX owned_b = numbers.add(without_fixed(parts_->is_fixed, b.col(k)), n);
-        const VectorX owned_x = parts_->krylov.solve(owned_b, report);
-        x.col(k) = without_fixed(parts_->is_fixed, numbers.spread(owned_x, n));
+        const VectorX owned_x = parts_->krylov.solve(owned_b, owned_is_fixed, report);
+        x.col(k) = numbers.spread(owned_x, n);
     }
     return report;
 }

@@ -6,6 +6,7 @@
 
 #include "iga/core/error.h"
 #include "iga/linalg/petsc_session.h"
+#include "iga/linalg/system_checks.h"
 
 namespace couture::iga {
 
@@ -130,7 +131,8 @@ double PetscKrylov::residual(const VectorX& b, const VectorX& x, VectorX& r) con
     return VectorOf(A, r).norm();
 }
 
-VectorX PetscKrylov::solve(const VectorX& b, SolveReport& report) {
+VectorX PetscKrylov::solve(const VectorX& b, const std::vector<char>& is_fixed,
+                           SolveReport& report) {
     if (ksp_ == nullptr) {
         throw SolverError("petsc: solve was called before factorize succeeded");
     }
@@ -151,7 +153,8 @@ VectorX PetscKrylov::solve(const VectorX& b, SolveReport& report) {
         if (n_left <= 0) {
             break;
         }
-        const VectorX next = x + run(r, n_left, ratio, n_iterations, reason);
+        // Multigrid leaves traces at fixed unknowns.
+        const VectorX next = x + free_part(is_fixed, run(r, n_left, ratio, n_iterations, reason));
         const double new_ratio = residual(b, next, r) / b_norm;
         if (!std::isfinite(new_ratio)) {
             break;

@@ -27,9 +27,11 @@ class PetscKrylov {
     /// Solves A x = b; restarts from the true residual where the recursive one has drifted.
     ///
     /// @param b  rows that this process owns
+    /// @param is_fixed  flags of these rows: x is zero there; may be empty
     /// @param report  iterations and residual: the worse of those there and these
     /// @throws SolverError  if |b - A x| / |b| stays above the tolerance
-    [[nodiscard]] VectorX solve(const VectorX& b, SolveReport& report);
+    [[nodiscard]] VectorX solve(const VectorX& b, const std::vector<char>& is_fixed,
+                                SolveReport& report);
 
     /// Options for the set-up of matrices and the like.
     [[nodiscard]] PetscOptions petsc_options();

@@ -44,7 +44,7 @@ class PetscSolver final : public LinearSolver {
         report.memory = memory_;
         x = MatrixX::Zero(b.rows(), b.cols());
         for (Eigen::Index k = 0; k < b.cols(); ++k) {
-            x.col(k) = free_part(is_fixed_, krylov_.solve(free_b.col(k), report));
+            x.col(k) = krylov_.solve(free_b.col(k), is_fixed_, report);
         }
         return report;
     }
