@@ -211,20 +211,7 @@ int solve_on(const iga::Communicator& ranks, const SolveOptions& options,
         if (ranks.rank() != 0) {
             return;
         }
-        const std::string json = to_json(summary);
-        io::write_text(json_file, json);
-        if (common.json) {
-            fmt::print("{}", json);
-            log::info(to_table(summary));
-        } else if (!common.quiet) {
-            fmt::print("{}", to_table(summary));
-        }
-        if (!summary.finished()) {
-            fmt::print(stderr, "couture: the run did not reach its end: {}\n",
-                       summary.stepping->reason);
-        } else if (!summary.passed()) {
-            fmt::print(stderr, "couture: an expectation is not met\n");
-        }
+        static_cast<void>(report_run(summary, json_file, common));
     });
     return summary.finished() && summary.passed() ? ExitCode::done : ExitCode::run_failed;
 }

@@ -1,13 +1,11 @@
-#include <fmt/core.h>
-
 #include "drivers/commands/commands.h"
 #include "drivers/deck_check.h"
 #include "drivers/distributed_run.h"
 #include "drivers/job_geometry.h"
+#include "drivers/job_summary.h"
 #include "drivers/linear_run.h"
 #include "drivers/stepped_run.h"
 #include "iga/core/error.h"
-#include "iga/core/log.h"
 #include "iga/distributed/communicator.h"
 #include "io/atomic_file.h"
 #include "io/picture.h"
@@ -51,30 +49,7 @@ int run_solve(const SolveOptions& options, const CommonOptions& common) {
         geometry);
     const std::filesystem::path json_file = folder / (name + ".json");
     summary.files.push_back(json_file.string());
-    const std::string json = to_json(summary);
-    io::write_text(json_file, json);
-    if (common.json) {
-        fmt::print("{}", json);
-        log::info(to_table(summary));
-    } else if (!common.quiet) {
-        fmt::print("{}", to_table(summary));
-    }
-    if (!summary.finished()) {
-        fmt::print(stderr, "couture: the run did not reach its end: {}; {}\n",
-                   summary.stepping->reason,
-                   summary.stepping->n_steps() > 0
-                       ? "its steps are kept: change [stepping] (a smaller smallest_step, more "
-                         "max_iterations, control = \"arc_length\" at a limit point) and go on "
-                         "with --resume"
-                       : "not one step was found: make the loads smaller or the first step "
-                         "shorter");
-        return ExitCode::run_failed;
-    }
-    if (!summary.passed()) {
-        fmt::print(stderr, "couture: an expectation is not met\n");
-        return ExitCode::run_failed;
-    }
-    return ExitCode::done;
+    return report_run(summary, json_file, common);
 }
 
 }  // namespace couture::drivers

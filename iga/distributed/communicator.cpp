@@ -89,23 +89,24 @@ MatrixX Communicator::sum(const MatrixX& values) const {
     return result;
 }
 
-double Communicator::sum(double value) const {
-    double result = 0.0;
-    MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+namespace {
+
+template <typename Number>
+Number reduce(Number value, MPI_Datatype type, MPI_Op operation) {
+    Number result{};
+    MPI_Allreduce(&value, &result, 1, type, operation, MPI_COMM_WORLD);
     return result;
 }
+
+}  // namespace
+
+double Communicator::sum(double value) const { return reduce(value, MPI_DOUBLE, MPI_SUM); }
 
 std::int64_t Communicator::sum(std::int64_t value) const {
-    std::int64_t result = 0;
-    MPI_Allreduce(&value, &result, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
-    return result;
+    return reduce(value, MPI_INT64_T, MPI_SUM);
 }
 
-double Communicator::max(double value) const {
-    double result = 0.0;
-    MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
-    return result;
-}
+double Communicator::max(double value) const { return reduce(value, MPI_DOUBLE, MPI_MAX); }
 
 std::int64_t Communicator::sum_before(std::int64_t value) const {
     std::int64_t result = 0;

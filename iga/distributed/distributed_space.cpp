@@ -34,6 +34,14 @@ VectorX pick(const VectorX& rows, const std::vector<int>& which, int n) {
     return result;
 }
 
+/// Row i goes to row which[i]; the inverse of `pick`.
+void place(const VectorX& rows, const std::vector<int>& which, int n, VectorX& result) {
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        result.segment(static_cast<Eigen::Index>(which[i]) * n, n) =
+            rows.segment(static_cast<Eigen::Index>(i) * n, n);
+    }
+}
+
 }  // namespace
 
 SharedNumbers::SharedNumbers(const Communicator& ranks, const std::vector<FunctionKey>& functions,
@@ -99,19 +107,12 @@ SharedNumbers::SharedNumbers(const Communicator& ranks, const std::vector<Functi
 
 VectorX SharedNumbers::add(const VectorX& local, int n) const {
     VectorX result = pick(local, owned_, n);
-    std::vector<int> ranks;
-    std::vector<VectorX> to;
-    std::vector<VectorX> from;
-    for (const Neighbour& other : neighbours_) {
-        ranks.push_back(other.rank);
-        to.push_back(pick(local, other.from, n));
-        from.emplace_back(static_cast<Eigen::Index>(other.to.size()) * n);
-    }
-    swap_rows(ranks, to, from);
+    const std::vector<VectorX> received =
+        swap_with_neighbours(local, n, &Neighbour::from, &Neighbour::to);
     for (std::size_t r = 0; r < neighbours_.size(); ++r) {
         for (std::size_t i = 0; i < neighbours_[r].to.size(); ++i) {
             result.segment(static_cast<Eigen::Index>(neighbours_[r].to[i]) * n, n) +=
-                from[r].segment(static_cast<Eigen::Index>(i) * n, n);
+                received[r].segment(static_cast<Eigen::Index>(i) * n, n);
         }
     }
     return result;
@@ -119,26 +120,28 @@ VectorX SharedNumbers::add(const VectorX& local, int n) const {
 
 VectorX SharedNumbers::spread(const VectorX& owned, int n) const {
     VectorX result(static_cast<Eigen::Index>(numbers_.size()) * n);
-    for (std::size_t i = 0; i < owned_.size(); ++i) {
-        result.segment(static_cast<Eigen::Index>(owned_[i]) * n, n) =
-            owned.segment(static_cast<Eigen::Index>(i) * n, n);
+    place(owned, owned_, n, result);
+    const std::vector<VectorX> received =
+        swap_with_neighbours(owned, n, &Neighbour::to, &Neighbour::from);
+    for (std::size_t r = 0; r < neighbours_.size(); ++r) {
+        place(received[r], neighbours_[r].from, n, result);
     }
+    return result;
+}
+
+std::vector<VectorX> SharedNumbers::swap_with_neighbours(
+    const VectorX& rows, int n, std::vector<int> Neighbour::*sent,
+    std::vector<int> Neighbour::*received) const {
     std::vector<int> ranks;
     std::vector<VectorX> to;
     std::vector<VectorX> from;
     for (const Neighbour& other : neighbours_) {
         ranks.push_back(other.rank);
-        to.push_back(pick(owned, other.to, n));
-        from.emplace_back(static_cast<Eigen::Index>(other.from.size()) * n);
+        to.push_back(pick(rows, other.*sent, n));
+        from.emplace_back(static_cast<Eigen::Index>((other.*received).size()) * n);
     }
     swap_rows(ranks, to, from);
-    for (std::size_t r = 0; r < neighbours_.size(); ++r) {
-        for (std::size_t i = 0; i < neighbours_[r].from.size(); ++i) {
-            result.segment(static_cast<Eigen::Index>(neighbours_[r].from[i]) * n, n) =
-                from[r].segment(static_cast<Eigen::Index>(i) * n, n);
-        }
-    }
-    return result;
+    return from;
 }
 
 std::int64_t SharedNumbers::n_sent() const {

@@ -46,6 +46,10 @@ class SharedNumbers {
         std::vector<int> to;
         std::vector<int> from;
     };
+    /// Sends each neighbour rows by one of its lists; what each sent, of the length of the other.
+    [[nodiscard]] std::vector<VectorX> swap_with_neighbours(
+        const VectorX& rows, int n, std::vector<int> Neighbour::*sent,
+        std::vector<int> Neighbour::*received) const;
 
     int n_global_ = 0;
     int first_owned_ = 0;
