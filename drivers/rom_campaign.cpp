@@ -80,6 +80,13 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
     if (!options.shard.empty()) {
         const auto [part, n_parts] = read_shard(options.shard);
         fill_store(samples, reference, store, part - 1, n_parts);
+        const int n_unsolved = progress_of(samples.plan(), store).n_unsolved;
+        if (samples.plan().n_projected > 0 && n_unsolved > 0) {
+            log::info(
+                fmt::format("rom: projected displacements wait for {} solutions of other "
+                            "shards; then start the shards again",
+                            n_unsolved));
+        }
         return false;
     }
     const RomPlan& plan = samples.plan();
@@ -87,14 +94,21 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
     const int n_cores = std::max(1, omp_get_num_procs() / n_threads);
     const int n_jobs = std::min({options.n_jobs > 0 ? options.n_jobs : n_cores, plan.n_geometries(),
                                  std::max(progress_of(plan, store).n_missing, 1)});
+    const std::string projected =
+        plan.n_projected > 0 ? fmt::format(" ({} of them projected)", plan.n_projected) : "";
     log::info(
-        fmt::format("rom: {} geometries x {} loads x {} materials = {} snapshots of {} "
+        fmt::format("rom: {} geometries{} x {} loads x {} materials = {} snapshots of {} "
                     "unknowns, {} at once",
-                    plan.n_geometries(), plan.n_loads(), plan.n_materials(), plan.n_snapshots(),
-                    3 * reference.n_dofs(), n_jobs));
+                    plan.n_geometries(), projected, plan.n_loads(), plan.n_materials(),
+                    plan.n_snapshots(), 3 * reference.n_dofs(), n_jobs));
     if (n_jobs > 1) {
         const Progress progress(plan, store);
-        run_shards(options, n_jobs, n_threads, command, [&] { progress.report(); });
+        const auto run = [&] {
+            run_shards(options, n_jobs, n_threads, command, [&] { progress.report(); });
+        };
+        run();
+        // What is projected waits for all that is solved.
+        if (plan.n_projected > 0 && progress_of(plan, store).n_missing > 0) run();
     } else {
         fill_store(samples, reference, store, 0, 1);
     }

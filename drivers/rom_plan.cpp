@@ -137,6 +137,8 @@ RomPlan make_rom_plan(const io::RomSection& section) {
                  {},
                  {},
                  {},
+                 0,
+                 0,
                  {}};
     plan.reference = plan.space.centre();
     if (section.design == io::GeometryDesign::list) {
@@ -158,13 +160,26 @@ RomPlan make_rom_plan(const io::RomSection& section) {
             "least, and some for each of them to be of use",
             section.source, plan.n_geometries(), plan.geometry.size());
     }
+    plan.first_projected = plan.n_geometries();
+    if (section.n_projected > 0) {
+        if (plan.geometry.empty()) {
+            throw InputError(
+                "{}: 'projected' adds geometries, but no parameter changes the geometry",
+                section.source);
+        }
+        plan.n_projected = section.n_projected;
+        // Where the design is the same sequence, it goes on.
+        plan.add_geometries(rom::sobol_design(static_cast<int>(plan.geometry.size()),
+                                              plan.first_projected + plan.n_projected)
+                                .bottomRows(plan.n_projected));
+    }
     plan.load_points = level_design(section, plan.load);
     plan.material_points = level_design(section, plan.material);
     return plan;
 }
 
 RomPlan make_validation_plan(const io::RomSection& section, int n_points, std::uint64_t seed) {
-    RomPlan plan{section.space(), {}, {}, {}, {}, {}, {}, {}, {}};
+    RomPlan plan{section.space(), {}, {}, {}, {}, {}, {}, {}, 0, 0, {}};
     for (int i = 0; i < plan.space.size(); ++i) plan.geometry.push_back(i);
     plan.reference = make_rom_plan(section).reference;
     std::optional<ListedMembers> list;

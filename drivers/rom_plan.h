@@ -22,10 +22,16 @@ struct RomPlan {
     MatrixX material_points;
     /// In the units, of the member that fixes connectivity and discretization.
     VectorX reference;
+    /// Positions of the geometries whose displacements are projected onto those of all others.
+    int first_projected = 0;
+    int n_projected = 0;
     /// Of the design `list`: the first geometries' files, if they have any.
     std::vector<io::FamilyMember> listed;
 
     [[nodiscard]] int n_geometries() const { return static_cast<int>(geometry_points.rows()); }
+    [[nodiscard]] bool is_projected(int i_geometry) const {
+        return i_geometry >= first_projected && i_geometry < first_projected + n_projected;
+    }
     [[nodiscard]] int n_loads() const { return static_cast<int>(load_points.rows()); }
     [[nodiscard]] int n_materials() const { return static_cast<int>(material_points.rows()); }
     [[nodiscard]] int n_snapshots() const { return n_geometries() * n_loads() * n_materials(); }
@@ -39,6 +45,8 @@ struct RomPlan {
 
 /// The designs of a deck's section [rom]: that of the geometry, and all combinations of the levels
 /// of loads and of materials.
+///
+/// Geometries that are projected follow those of the design, at points of the Sobol sequence.
 ///
 /// The reference member is in the middle of all ranges, of listed members the one nearest to it.
 ///

@@ -20,6 +20,7 @@
 #include "iga/topology/jacobian_certificate.h"
 #include "io/atomic_file.h"
 #include "io/pants_file.h"
+#include "rom/galerkin.h"
 #include "rom/member_geometry.h"
 
 namespace couture::drivers {
@@ -91,6 +92,12 @@ const io::RomSection& checked_section(const io::Deck& deck) {
             "for "
             "each, or make the loads parameters",
             name, deck.problem.load_cases().size(), deck.problem.combinations.size());
+    }
+    if (deck.rom->n_projected > 0 && (deck.is_hyperelastic() || !moves(deck))) {
+        throw InputError("{}: 'projected': {}", deck.rom->source,
+                         deck.is_hyperelastic()
+                             ? "solutions at finite strain are not projected; take more 'samples'"
+                             : "the deck has no loads, nothing is solved; take more 'samples'");
     }
     return *deck.rom;
 }
@@ -253,55 +260,73 @@ iga::SpacePtr<3> RomSamples::make_member(const VectorX& point,
     return space;
 }
 
-MatrixX RomSamples::solve(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points) {
-    if (is_geometry_only()) {
-        return MatrixX::Zero(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
-    }
-    std::vector<io::Deck> decks;
-    for (const VectorX& point : points) decks.push_back(deck_at(point));
-    MatrixX result(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
+std::vector<iga::Problem> RomSamples::linear_problems(const std::vector<VectorX>& points) const {
+    std::vector<iga::Problem> problems;
+    for (const VectorX& point : points) problems.push_back(deck_at(point).problem);
     const bool moves_supports = std::any_of(
         deck_.rom->parameters.begin(), deck_.rom->parameters.end(), [](const auto& parameter) {
             return !parameter.keys.empty() && parameter.keys.front().starts_with("displacement.");
         });
-    if (!deck_.is_hyperelastic() && !moves_supports) return solve_linear(member, decks);
-    for (std::size_t l = 0; l < decks.size(); ++l) {
-        auto column = result.col(static_cast<Eigen::Index>(l));
-        if (!deck_.is_hyperelastic()) {
-            column = solve_linear(member, {decks[l]});
-            continue;
+    if (moves_supports || problems.size() == 1) return problems;
+    iga::Problem all = without_loads(problems.front());
+    for (std::size_t l = 0; l < problems.size(); ++l) {
+        add_loads(all, problems[l], fmt::format("load {}", l));
+    }
+    return {all};
+}
+
+MatrixX RomSamples::solve(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points) {
+    MatrixX result(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
+    if (is_geometry_only()) return MatrixX::Zero(result.rows(), result.cols());
+    if (!deck_.is_hyperelastic()) {
+        Eigen::Index column = 0;
+        for (const iga::Problem& problem : linear_problems(points)) {
+            const MatrixX some = solve_linear(member, problem);
+            result.middleCols(column, some.cols()) = some;
+            column += some.cols();
         }
+        return result;
+    }
+    for (std::size_t l = 0; l < points.size(); ++l) {
+        const io::Deck deck = deck_at(points[l]);
         MatrixX displacement;
         const auto report = iga::follow_loads<3>(
-            iga::make_start<3>(member), decks[l].problem, decks[l].stepping,
+            iga::make_start<3>(member), deck.problem, deck.stepping,
             [&](const iga::AcceptedStep<3>& step) { displacement = step.state.displacement; });
         if (!report.finished) {
             throw SolverError("the run stopped at t = {:.6g} of {:.6g}: {}", report.t,
-                              decks[l].stepping.end, report.reason);
+                              deck.stepping.end, report.reason);
         }
-        column = iga::flatten(displacement);
+        result.col(static_cast<Eigen::Index>(l)) = iga::flatten(displacement);
     }
     return result;
 }
 
-MatrixX RomSamples::solve_linear(const iga::SpacePtr<3>& member,
-                                 const std::vector<io::Deck>& decks) {
-    iga::Problem problem = without_loads(decks.front().problem);
-    for (std::size_t l = 0; l < decks.size(); ++l) {
-        add_loads(problem, decks[l].problem, fmt::format("load {}", l));
-    }
-    if (decks.size() == 1) problem = decks.front().problem;
+MatrixX RomSamples::solve_linear(const iga::SpacePtr<3>& member, const iga::Problem& problem) {
     iga::LinearStaticOptions options;
     options.solver = deck_.solver;
     options.n_gauss_points = deck_.discretization.n_gauss_points;
     options.reused_solver = solver_.get();
     const auto result = iga::solve_linear_static<3>(member, problem, options);
-    MatrixX displacements(3L * member->n_dofs(), static_cast<Eigen::Index>(decks.size()));
-    for (std::size_t l = 0; l < decks.size(); ++l) {
+    MatrixX displacements(3L * member->n_dofs(), static_cast<Eigen::Index>(result.cases.size()));
+    for (std::size_t l = 0; l < result.cases.size(); ++l) {
         displacements.col(static_cast<Eigen::Index>(l)) =
             iga::flatten(result.cases[l].displacement.coefficients);
     }
     return displacements;
+}
+
+MatrixX RomSamples::project(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points,
+                            const MatrixX& fields) const {
+    MatrixX result(3L * member->n_dofs(), static_cast<Eigen::Index>(points.size()));
+    Eigen::Index column = 0;
+    for (const iga::Problem& problem : linear_problems(points)) {
+        const MatrixX some = rom::projected_displacements(*member, fields, problem,
+                                                          deck_.discretization.n_gauss_points);
+        result.middleCols(column, some.cols()) = some;
+        column += some.cols();
+    }
+    return result;
 }
 
 void RomSamples::check_factored(const iga::SpacePtr<3>& reference) const {

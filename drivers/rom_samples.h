@@ -66,6 +66,12 @@ class RomSamples {
     /// @throws what the solvers throw; SolverError for a run that does not reach its end
     [[nodiscard]] MatrixX solve(const iga::SpacePtr<3>& member, const std::vector<VectorX>& points);
 
+    /// As `solve` of linear problems, in the space of some fields: no factorization.
+    ///
+    /// @param fields  3 n_nodes x n_fields
+    [[nodiscard]] MatrixX project(const iga::SpacePtr<3>& member,
+                                  const std::vector<VectorX>& points, const MatrixX& fields) const;
+
     /// Checks that displacements are proportional to each factored load and inversely to each
     /// factored modulus, whatever the rest.
     ///
@@ -88,8 +94,10 @@ class RomSamples {
     [[nodiscard]] io::Deck parsed_deck(const VectorX& point, std::vector<std::string> more) const;
     // With the member's own geometry, of a listed one its file.
     [[nodiscard]] io::Deck deck_of_member(const VectorX& point) const;
-    [[nodiscard]] MatrixX solve_linear(const iga::SpacePtr<3>& member,
-                                       const std::vector<io::Deck>& decks);
+    // Problems whose loads alone differ are one with several load cases.
+    [[nodiscard]] std::vector<iga::Problem> linear_problems(
+        const std::vector<VectorX>& points) const;
+    [[nodiscard]] MatrixX solve_linear(const iga::SpacePtr<3>& member, const iga::Problem& problem);
 
     std::filesystem::path path_;
     std::vector<std::string> overrides_;

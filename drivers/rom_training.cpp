@@ -7,6 +7,8 @@
 #include "iga/core/timer.h"
 #include "iga/solve/static_system.h"
 #include "rom/member_geometry.h"
+#include "rom/pod.h"
+#include "rom/reduced_model.h"
 
 namespace couture::drivers {
 
@@ -42,8 +44,38 @@ bool make_geometry(RomSamples& samples, const iga::Space<3>& reference, io::Snap
     return true;
 }
 
+// What projected displacements are made of: modes of all solutions, each of unit length, so that
+// small ones are as well represented as large ones.
+MatrixX projection_fields(const RomSamples& samples, const iga::Space<3>& reference,
+                          const io::SnapshotStore& store, const std::string& signature) {
+    const RomPlan& plan = samples.plan();
+    std::vector<MatrixX> solutions;
+    Eigen::Index n_columns = 0;
+    for (int g = 0; g < plan.n_geometries(); ++g) {
+        for (int m = 0; m < plan.n_materials(); ++m) {
+            if (plan.is_projected(g) || !store.has_solution(g, m)) continue;
+            solutions.push_back(store.solution(g, m, signature));
+            n_columns += solutions.back().cols();
+        }
+    }
+    const rom::InnerProduct product = rom::mode_product(
+        reference, samples.section().is_l2 ? rom::ModeProduct::l2 : rom::ModeProduct::euclidean);
+    MatrixX all(3L * reference.n_dofs(), n_columns);
+    Eigen::Index column = 0;
+    for (const MatrixX& some : solutions) {
+        const VectorX sizes = rom::lengths(some, product).cwiseMax(1e-300);
+        all.middleCols(column, some.cols()) = some * sizes.cwiseInverse().asDiagonal();
+        column += some.cols();
+    }
+    if (n_columns == 0) throw InputError("rom: no solution is left that others could be made of");
+    constexpr double tolerance = 1e-5;
+    return rom::make_pod_basis(all, product, {.tolerance = tolerance}).modes;
+}
+
+// @param fields  that it is projected onto; none: it is solved
 void make_solution(RomSamples& samples, const iga::SpacePtr<3>& member, io::SnapshotStore& store,
-                   int i_geometry, int i_material, const std::string& signature) {
+                   int i_geometry, int i_material, const std::string& signature,
+                   const MatrixX& fields) {
     const Timer timer;
     std::vector<VectorX> points;
     for (int l = 0; l < samples.plan().n_loads(); ++l) {
@@ -52,7 +84,8 @@ void make_solution(RomSamples& samples, const iga::SpacePtr<3>& member, io::Snap
     MatrixX displacements;
     std::string failure;
     try {
-        displacements = samples.solve(member, points);
+        displacements = fields.size() > 0 ? samples.project(member, points, fields)
+                                          : samples.solve(member, points);
     } catch (const Error& error) {
         failure = error.what();
     }
@@ -81,6 +114,7 @@ StoreProgress progress_of(const RomPlan& plan, const io::SnapshotStore& store) {
                 ++progress.n_refused;
             } else if (!is_refused) {
                 ++progress.n_missing;
+                if (!plan.is_projected(g)) ++progress.n_unsolved;
             }
         }
     }
@@ -163,18 +197,38 @@ rom::SnapshotSet read_snapshots(const RomSamples& samples, const iga::Space<3>& 
 void fill_store(RomSamples& samples, const iga::Space<3>& reference, io::SnapshotStore& store,
                 int i_first, int stride) {
     const std::string signature = iga::signature(reference.geometry());
-    const Progress progress(samples.plan(), store);
-    for (int g = i_first; g < samples.plan().n_geometries(); g += stride) {
-        if (!store.has_geometry(g) && store.geometry_failure(g)) continue;
-        if (!make_geometry(samples, reference, store, g, signature)) continue;
+    const RomPlan& plan = samples.plan();
+    const Progress progress(plan, store);
+    const auto make_solutions = [&](int g, const MatrixX& fields) {
+        if (!make_geometry(samples, reference, store, g, signature)) return;
         iga::SpacePtr<3> member;
-        for (int m = 0; m < samples.plan().n_materials(); ++m) {
+        for (int m = 0; m < plan.n_materials(); ++m) {
             if (store.has_solution(g, m) || store.solution_failure(g, m)) continue;
             if (!member) member = stored_member(reference, store, g, signature);
-            make_solution(samples, member, store, g, m, signature);
+            make_solution(samples, member, store, g, m, signature, fields);
             progress.report();
         }
+    };
+    const auto for_own = [&](bool is_projected, const auto& make) {
+        for (int g = i_first; g < plan.n_geometries(); g += stride) {
+            if (plan.is_projected(g) != is_projected) continue;
+            if (!store.has_geometry(g) && store.geometry_failure(g)) continue;
+            make(g);
+        }
+    };
+    for_own(false, [&](int g) { make_solutions(g, {}); });
+    if (plan.n_projected == 0) return;
+    const StoreProgress made = progress_of(plan, store);
+    if (made.n_unsolved > 0) {
+        for_own(true, [&](int g) {
+            if (make_geometry(samples, reference, store, g, signature)) progress.report();
+        });
+        return;
     }
+    if (made.n_missing == 0) return;
+    const MatrixX fields = projection_fields(samples, reference, store, signature);
+    log::info(fmt::format("rom: projecting onto {} modes of the solutions", fields.cols()));
+    for_own(true, [&](int g) { make_solutions(g, fields); });
 }
 
 }  // namespace couture::drivers

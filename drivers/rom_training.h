@@ -23,8 +23,9 @@ struct StoreProgress {
     /// Of all loads with one geometry and material.
     int n_solutions = 0;
     int n_refused = 0;
-    /// Solutions that are neither there nor refused.
+    /// Solutions that are neither there nor refused, and those of them that are not projected.
     int n_missing = 0;
+    int n_unsolved = 0;
 };
 
 /// Says how far a store is, and how long the rest may take.
@@ -54,7 +55,9 @@ class Progress {
                                               const io::SnapshotStore& store);
 
 /// Makes what a store lacks of the geometries `i_first`, `i_first + stride`, ...: those that can't
-/// be meshed or solved are noted there as refused, and the others go on.
+/// be meshed or solved are noted there as refused, and the others go on. Displacements that are
+/// projected are made if all those that are solved are there when it begins, or if it makes the
+/// last of them.
 ///
 /// @param reference  the space of the reference member
 /// @throws FileError  if a result can't be written: all before it is kept

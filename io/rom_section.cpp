@@ -195,6 +195,10 @@ void read_design(Section& section, const std::filesystem::path& folder, RomSecti
         section.mistake("design", fmt::format("design = \"{}\" needs 'samples'{}", name,
                                               name == "full" ? ", the values on each axis" : ""));
     }
+    result.n_projected = section.integer("projected", 0, most_samples).value_or(0);
+    if (result.n_projected > 0 && result.design == GeometryDesign::list) {
+        section.mistake("projected", "members that are listed can't be made at other points");
+    }
     result.seed = static_cast<std::uint64_t>(section.integer("seed", 0, 1'000'000'000).value_or(1));
 }
 

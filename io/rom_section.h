@@ -42,6 +42,9 @@ struct RomSection {
     /// Of random, sobol and lhs; of full on each axis.
     int n_samples = 0;
     std::uint64_t seed = 1;
+    /// Geometries beside the design that are made, not solved: their displacements are projected
+    /// onto those of the design.
+    int n_projected = 0;
     /// Tables (see read_member_table) of the design `list`: what is learned, and what that is
     /// compared with.
     std::filesystem::path members;

@@ -16,7 +16,7 @@ namespace couture::rom {
 
 namespace {
 
-void check_problem(const iga::Problem& problem, const std::string& load_case) {
+void check_problem(const iga::Problem& problem) {
     if (problem.physics != iga::Physics::elasticity) {
         throw InputError(
             "Galerkin solution: the problem is not elastic; displacement modes solve "
@@ -30,6 +30,9 @@ void check_problem(const iga::Problem& problem, const std::string& load_case) {
                 material.name);
         }
     }
+}
+
+void check_case(const iga::Problem& problem, const std::string& load_case) {
     const std::vector<std::string> cases = problem.load_cases();
     if (std::find(cases.begin(), cases.end(), load_case) == cases.end()) {
         throw InputError("Galerkin solution: there is no load case '{}'; there are: '{}'",
@@ -37,15 +40,19 @@ void check_problem(const iga::Problem& problem, const std::string& load_case) {
     }
 }
 
-/// The full system on one geometry, in the frames of the constraints.
+/// The full system on one geometry, in the frames of the constraints: a column for each load case.
 class LinearSystem {
   public:
     LinearSystem(const iga::Space<3>& space, const iga::Problem& problem,
-                 const std::string& load_case, std::optional<int> n_gauss_points)
-        : constraints_(iga::make_constraints(space, problem, {load_case})) {
+                 const std::vector<std::string>& load_cases, std::optional<int> n_gauss_points)
+        : constraints_(iga::make_constraints(space, problem, load_cases)),
+          loads_(3L * space.n_dofs(), static_cast<Eigen::Index>(load_cases.size())) {
         const SparseMatrix foundations = iga::assemble_foundations(space, problem, n_gauss_points);
         iga::require_held(space, problem, constraints_, foundations);
-        loads_ = iga::flatten(iga::assemble_loads(space, problem, load_case, n_gauss_points));
+        for (std::size_t i = 0; i < load_cases.size(); ++i) {
+            loads_.col(static_cast<Eigen::Index>(i)) =
+                iga::flatten(iga::assemble_loads(space, problem, load_cases[i], n_gauss_points));
+        }
         constraints_.to_frames(loads_);
         stiffness_ = iga::assemble(space, iga::stiffness_form<3>(problem, space.n_patches()),
                                    n_gauss_points);
@@ -55,14 +62,14 @@ class LinearSystem {
 
     [[nodiscard]] MatrixX stiffness_times(const MatrixX& u) const { return stiffness_ * u; }
     /// What supports prescribe, 0 at the free unknowns.
-    [[nodiscard]] VectorX prescribed() const { return constraints_.values.col(0); }
+    [[nodiscard]] MatrixX prescribed() const { return constraints_.values; }
     [[nodiscard]] MatrixX to_frames(MatrixX u) const {
         constraints_.to_frames(u);
         return u;
     }
-    [[nodiscard]] VectorX to_global(MatrixX u) const {
+    [[nodiscard]] MatrixX to_global(MatrixX u) const {
         constraints_.to_global(u);
-        return u.col(0);
+        return u;
     }
     /// 0 at the unknowns that are held.
     [[nodiscard]] MatrixX free_part(MatrixX u) const {
@@ -74,7 +81,7 @@ class LinearSystem {
         return u;
     }
     /// f - K u on the free unknowns.
-    [[nodiscard]] VectorX residual(const VectorX& u) const {
+    [[nodiscard]] MatrixX residual(const MatrixX& u) const {
         return free_part(loads_ - stiffness_times(u));
     }
 
@@ -84,21 +91,39 @@ class LinearSystem {
     iga::BlockMatrix stiffness_;
 };
 
-/// Solves A a = b for a positive semidefinite A: directions in which A vanishes to rounding (modes
+/// Solves A a = B for a positive semidefinite A: directions in which A vanishes to rounding (modes
 /// that depend on each other) are left out. `rank` gets the number of the others.
-VectorX solve_projected(const MatrixX& A, const VectorX& b, int& rank) {
+MatrixX solve_projected(const MatrixX& A, const MatrixX& B, int& rank) {
     constexpr double rounding = 1e-13;
     const VectorX scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(scale.asDiagonal() * A * scale.asDiagonal());
     const VectorX& values = eigen.eigenvalues();
-    VectorX in_directions = eigen.eigenvectors().transpose() * scale.cwiseProduct(b);
+    MatrixX in_directions = eigen.eigenvectors().transpose() * (scale.asDiagonal() * B);
     rank = 0;
     for (Eigen::Index i = 0; i < values.size(); ++i) {
         const bool is_kept = values[i] > rounding * values[values.size() - 1];
-        in_directions[i] = is_kept ? in_directions[i] / values[i] : 0.0;
+        in_directions.row(i) *= is_kept ? 1.0 / values[i] : 0.0;
         rank += is_kept ? 1 : 0;
     }
-    return scale.cwiseProduct(eigen.eigenvectors() * in_directions);
+    return scale.asDiagonal() * (eigen.eigenvectors() * in_directions);
+}
+
+struct Projection {
+    /// In the frames of the constraints, a column for each load case.
+    MatrixX displacements;
+    /// Of the fields that are independent in energy.
+    int rank = 0;
+};
+
+/// @param fields  3 n_nodes x n, not in frames
+Projection project(const LinearSystem& system, const MatrixX& fields) {
+    const MatrixX V = system.free_part(system.to_frames(fields));
+    const MatrixX g = system.prescribed();
+    Projection result;
+    const MatrixX A = V.transpose() * system.stiffness_times(V);
+    result.displacements =
+        g + V * solve_projected(A, V.transpose() * system.residual(g), result.rank);
+    return result;
 }
 
 /// Modes, and the mean where there is one.
@@ -117,21 +142,17 @@ MatrixX trial_fields(const ReducedModel& model) {
 GalerkinSolution solve_galerkin(const ReducedModel& model, const Evaluation& evaluation,
                                 const iga::Problem& problem, const std::string& load_case,
                                 std::optional<int> n_gauss_points) {
-    check_problem(problem, load_case);
+    check_problem(problem);
+    check_case(problem, load_case);
     const iga::Space<3> space(model.member(evaluation));
-    const LinearSystem system(space, problem, load_case, n_gauss_points);
-
-    const MatrixX V = system.free_part(system.to_frames(trial_fields(model)));
-    const MatrixX KV = system.stiffness_times(V);
-    const VectorX g = system.prescribed();
-    const VectorX right_hand_side = system.residual(g);
-    GalerkinSolution solution;
-    const VectorX a =
-        solve_projected(V.transpose() * KV, V.transpose() * right_hand_side, solution.n_modes);
-    const VectorX u = g + V * a;
+    const LinearSystem system(space, problem, {load_case}, n_gauss_points);
+    const Projection projection = project(system, trial_fields(model));
+    const VectorX u = projection.displacements;
 
     const VectorX kriged = system.to_frames(evaluation.displacement);
-    const double scale = std::max(right_hand_side.norm(), 1e-300);
+    const double scale = std::max(system.residual(system.prescribed()).norm(), 1e-300);
+    GalerkinSolution solution;
+    solution.n_modes = projection.rank;
     const auto energy_product = [&](const VectorX& v) {
         return v.dot(system.stiffness_times(v).col(0));
     };
@@ -142,6 +163,17 @@ GalerkinSolution solve_galerkin(const ReducedModel& model, const Evaluation& eva
     solution.relative_change = std::sqrt(std::max(0.0, energy_product(u - kriged)) /
                                          std::max(2.0 * solution.energy, 1e-300));
     return solution;
+}
+
+MatrixX projected_displacements(const iga::Space<3>& member, const MatrixX& fields,
+                                const iga::Problem& problem, std::optional<int> n_gauss_points) {
+    check_problem(problem);
+    if (fields.rows() != 3L * member.n_dofs()) {
+        throw InputError("Galerkin solution: fields of {} values on {} nodes; there must be 3 each",
+                         fields.rows(), member.n_dofs());
+    }
+    const LinearSystem system(member, problem, problem.load_cases(), n_gauss_points);
+    return system.to_global(project(system, fields).displacements);
 }
 
 }  // namespace couture::rom

@@ -38,4 +38,14 @@ struct GalerkinSolution {
                                               const std::string& load_case = "",
                                               std::optional<int> n_gauss_points = {});
 
+/// The same in the space of given fields on a member's own geometry, for all load cases of a
+/// problem: what stands for its full solutions where the fields are those of its neighbours.
+///
+/// @param fields  3 n_nodes x n_fields
+/// @return 3 n_nodes x n_load_cases, in the order of problem.load_cases()
+/// @throws InputError  for another number of values, and as solve_galerkin
+[[nodiscard]] MatrixX projected_displacements(const iga::Space<3>& member, const MatrixX& fields,
+                                              const iga::Problem& problem,
+                                              std::optional<int> n_gauss_points = {});
+
 }  // namespace couture::rom
