@@ -94,13 +94,11 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
     const int n_cores = std::max(1, omp_get_num_procs() / n_threads);
     const int n_jobs = std::min({options.n_jobs > 0 ? options.n_jobs : n_cores, plan.n_geometries(),
                                  std::max(progress_of(plan, store).n_missing, 1)});
-    const std::string projected =
-        plan.n_projected > 0 ? fmt::format(" ({} of them projected)", plan.n_projected) : "";
     log::info(
-        fmt::format("rom: {} geometries{} x {} loads x {} materials = {} snapshots of {} "
+        fmt::format("rom: {} x {} loads x {} materials = {} snapshots of {} "
                     "unknowns, {} at once",
-                    plan.n_geometries(), projected, plan.n_loads(), plan.n_materials(),
-                    plan.n_snapshots(), 3 * reference.n_dofs(), n_jobs));
+                    plan.geometries_text(), plan.n_loads(), plan.n_materials(), plan.n_snapshots(),
+                    3 * reference.n_dofs(), n_jobs));
     if (n_jobs > 1) {
         const Progress progress(plan, store);
         const auto run = [&] {

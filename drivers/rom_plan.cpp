@@ -1,5 +1,7 @@
 #include "drivers/rom_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "iga/core/error.h"
@@ -120,6 +122,12 @@ VectorX RomPlan::point(int i_geometry, int i_load, int i_material) const {
     fill(load, load_points, i_load);
     fill(material, material_points, i_material);
     return space.from_unit(unit);
+}
+
+std::string RomPlan::geometries_text() const {
+    const std::string projected =
+        n_projected > 0 ? fmt::format(" ({} projected)", n_projected) : "";
+    return fmt::format("{} geometries{}", n_geometries(), projected);
 }
 
 void RomPlan::add_geometries(const MatrixX& points) {

@@ -37,6 +37,8 @@ struct RomPlan {
     [[nodiscard]] int n_snapshots() const { return n_geometries() * n_loads() * n_materials(); }
     /// Of all parameters, in their units.
     [[nodiscard]] VectorX point(int i_geometry, int i_load, int i_material) const;
+    /// "1422 geometries (1200 projected)".
+    [[nodiscard]] std::string geometries_text() const;
     /// The listed member at a point of the parameters; null if there is none.
     [[nodiscard]] const io::FamilyMember* member_at(const VectorX& point) const;
     /// Appends points of the geometry. @param points  n x parameters of the group, unit cube

@@ -11,7 +11,7 @@ namespace couture::io {
 namespace {
 
 constexpr std::string_view magic = "COUTROM\n";
-constexpr int version = 1;
+constexpr int version = 2;
 
 /// Appends numbers in little-endian order.
 class Bytes {
@@ -69,20 +69,23 @@ void add_parameters(Bytes& out, const rom::ReducedModelParts& parts) {
     }
 }
 
-void add_kriging(Bytes& out, const rom::Kriging& one) {
+// @param i_same  an earlier coefficient with the same system, which is not repeated; -1: none
+void add_kriging(Bytes& out, const rom::Kriging& one, std::int64_t i_same) {
     out.matrix(one.parameters().lengths);
     out.matrix(one.trend_coefficients());
     out.matrix(one.weights());
     out.number(one.process_variance());
-    const rom::CorrelationMatrix& K = one.correlation_matrix();
+    out.integer(i_same);
+    if (i_same >= 0) return;
+    const rom::CorrelationMatrix& K = one.system()->correlation_matrix();
     if (K.eigenvectors().empty()) {
         out.matrix(K.cholesky_factor());
     } else {
         for (const MatrixX& Q : K.eigenvectors()) out.matrix(Q);
         out.matrix(K.eigenvalues());
     }
-    out.matrix(one.K_inverse_F());
-    out.matrix(one.trend_factor());
+    out.matrix(one.system()->K_inverse_F());
+    out.matrix(one.system()->trend_factor());
 }
 
 void add_coefficients(Bytes& out, const rom::CoefficientModel& model,
@@ -107,7 +110,12 @@ void add_coefficients(Bytes& out, const rom::CoefficientModel& model,
         out.integer(points.cols());
         out.matrix(points);
     }
-    for (const rom::Kriging& one : model.models()) add_kriging(out, one);
+    const std::vector<rom::Kriging>& models = model.models();
+    for (std::size_t k = 0; k < models.size(); ++k) {
+        std::size_t same = 0;
+        while (models[same].system() != models[k].system()) ++same;
+        add_kriging(out, models[k], same < k ? static_cast<std::int64_t>(same) : -1);
+    }
 }
 
 void add_part(Bytes& out, const rom::FieldPart& part, double calibration, const VectorX& mean,

@@ -1,5 +1,6 @@
 #include "rom/coefficient_model.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -30,6 +31,29 @@ std::vector<Kriging> make_models(int n, const Make& make) {
         models.push_back(std::move(*model));
     }
     return models;
+}
+
+/// One for all coefficients whose parameters are the same.
+std::vector<std::shared_ptr<const KrigingSystem>> make_systems(
+    const TensorDesign& design, const KrigingOptions& options,
+    const std::vector<KrigingParameters>& parameters) {
+    const auto n = static_cast<int>(parameters.size());
+    std::vector<int> first(n);
+    for (int k = 0; k < n; ++k) {
+        first[k] = static_cast<int>(std::find(parameters.begin(), parameters.end(), parameters[k]) -
+                                    parameters.begin());
+    }
+    std::vector<std::shared_ptr<const KrigingSystem>> systems(n);
+    parallel_for(n, [&](int k) {
+        if (first[k] != k) return;
+        try {
+            systems[k] = make_kriging_system(design, options, parameters[k]);
+        } catch (const InputError& error) {
+            throw InputError("coefficient {}: {}", k, error.what());
+        }
+    });
+    for (int k = 0; k < n; ++k) systems[k] = systems[first[k]];
+    return systems;
 }
 
 /// Sum of the squares of all leave-one-out residuals of the first coefficients.
@@ -91,6 +115,25 @@ MatrixX factor_correlations(CorrelationKind kind, const MatrixX& points, const V
     return K;
 }
 
+/// The same for one set of lengths, 1 x points, along the points.
+MatrixX factor_correlations_of_all(CorrelationKind kind, const MatrixX& points,
+                                   const VectorX& point, const VectorX& inverse_lengths) {
+    ArrayX exponent = ArrayX::Zero(points.rows());
+    ArrayX polynomial = ArrayX::Ones(points.rows());
+    ArrayX s(points.rows());
+    for (Eigen::Index axis = 0; axis < points.cols(); ++axis) {
+        s = (points.col(axis).array() - point[axis]).abs() * inverse_lengths[axis];
+        if (kind == CorrelationKind::gaussian) {
+            exponent += 0.5 * s * s;
+        } else {
+            s *= std::sqrt(5.0);
+            exponent += s;
+            polynomial *= 1.0 + s + s * s * (1.0 / 3.0);
+        }
+    }
+    return (polynomial * (-exponent).exp()).matrix().transpose();
+}
+
 /// Derivatives of these by one of the factor's inputs.
 MatrixX factor_slopes(CorrelationKind kind, const MatrixX& points, const VectorX& point,
                       const MatrixX& inverse_lengths, Eigen::Index input, const MatrixX& K) {
@@ -121,6 +164,16 @@ VectorX contract(const std::vector<MatrixX>& factors, const MatrixX& weights) {
     return sums.col(0);
 }
 
+/// The same where all coefficients have the factors' one row of correlations.
+VectorX contract_shared(const std::vector<MatrixX>& factors, const MatrixX& weights) {
+    VectorX product = VectorX::Ones(1);
+    for (const MatrixX& row : factors) {
+        const MatrixX outer = row.transpose() * product.transpose();
+        product = Eigen::Map<const VectorX>(outer.data(), outer.size());
+    }
+    return weights * product;
+}
+
 }  // namespace
 
 CoefficientModel::CoefficientModel(TensorDesign design, MatrixX values,
@@ -143,8 +196,9 @@ CoefficientModel::CoefficientModel(TensorDesign design, MatrixX values,
             throw InputError("CoefficientModel: {} kriging parameters for {} coefficients",
                              parameters.size(), n_coefficients());
         }
+        const auto systems = make_systems(design_, options_, parameters);
         models_ = make_models(n_coefficients(), [&](int k) {
-            return Kriging(design_, training_.col(k), options_, parameters[k]);
+            return Kriging(design_, training_.col(k), options_, parameters[k], systems[k]);
         });
     }
     collect();
@@ -167,6 +221,10 @@ void CoefficientModel::collect() {
         trends_.row(k) = models_[k].trend_coefficients().transpose();
         weights_.row(k) = models_[k].weights().transpose();
     }
+    is_shared_ = std::all_of(models_.begin(), models_.end(), [&](const Kriging& one) {
+        return n > 1 && one.system() == models_[0].system();
+    });
+    if (is_shared_) inverse_lengths_.conservativeResize(1, Eigen::NoChange);
 }
 
 std::vector<KrigingParameters> CoefficientModel::parameters() const {
@@ -197,7 +255,11 @@ std::vector<MatrixX> all_correlations(const TensorDesign& design, CorrelationKin
     std::vector<MatrixX> factors(design.factors.size());
     for_factors(design, point, inverse_lengths,
                 [&](std::size_t g, const MatrixX& points, const VectorX& x, const MatrixX& inverse,
-                    Eigen::Index) { factors[g] = factor_correlations(kind, points, x, inverse); });
+                    Eigen::Index) {
+                    factors[g] = inverse.rows() == 1
+                                     ? factor_correlations_of_all(kind, points, x, inverse.row(0))
+                                     : factor_correlations(kind, points, x, inverse);
+                });
     return factors;
 }
 
@@ -211,7 +273,7 @@ VectorX CoefficientModel::values(const VectorX& point) const {
     const std::vector<MatrixX> factors =
         all_correlations(design_, options_.correlation, point, inverse_lengths_);
     return trends_ * trend_functions(point.transpose(), options_.trend).transpose() +
-           contract(factors, weights_);
+           (is_shared_ ? contract_shared(factors, weights_) : contract(factors, weights_));
 }
 
 MatrixX CoefficientModel::gradient(const VectorX& point) const {
@@ -229,7 +291,9 @@ MatrixX CoefficientModel::gradient(const VectorX& point) const {
                         std::vector<MatrixX> slopes = factors;
                         slopes[g] = factor_slopes(options_.correlation, points, x, inverse, input,
                                                   factors[g]);
-                        gradient.col(first + input) += contract(slopes, weights_);
+                        gradient.col(first + input) += is_shared_
+                                                           ? contract_shared(slopes, weights_)
+                                                           : contract(slopes, weights_);
                     }
                 });
     return gradient;
@@ -239,7 +303,13 @@ VectorX CoefficientModel::variances(const VectorX& point) const {
     assert(point.size() == n_inputs());
     VectorX variances = VectorX::Zero(n_coefficients());
     for (std::size_t k = 0; k < models_.size(); ++k) {
-        variances[static_cast<Eigen::Index>(k)] = models_[k].variance(point);
+        const Kriging& one = models_[k];
+        const auto i = static_cast<Eigen::Index>(k);
+        // What variances take time for is the same where the system is.
+        variances[i] =
+            k > 0 && one.system() == models_[k - 1].system()
+                ? variances[i - 1] / models_[k - 1].process_variance() * one.process_variance()
+                : one.variance(point);
     }
     return variances;
 }

@@ -16,7 +16,8 @@ class CoefficientModel {
     /// @param values  n_points x n_coefficients, the largest coefficients first
     /// @throws InputError  as Kriging, naming the coefficient
     CoefficientModel(TensorDesign design, MatrixX values, const KrigingOptions& options);
-    /// With parameters that are known, one for each coefficient.
+    /// With parameters that are known, one for each coefficient. Where they are the same the
+    /// correlation matrix is factored once.
     CoefficientModel(TensorDesign design, MatrixX values, const KrigingOptions& options,
                      const std::vector<KrigingParameters>& parameters);
 
@@ -47,8 +48,10 @@ class CoefficientModel {
     KrigingOptions options_;
     MatrixX training_;
     std::vector<Kriging> models_;
+    /// All models have the same lengths and nugget.
+    bool is_shared_ = false;
     /// Coefficients run along the columns, so that all are computed side by side.
-    MatrixX inverse_lengths_;  ///< n_coefficients x n_inputs
+    MatrixX inverse_lengths_;  ///< n_coefficients x n_inputs; 1 x n_inputs if shared
     MatrixX trends_;           ///< n_coefficients x trend terms
     MatrixX weights_;          ///< n_coefficients x n_points
 };

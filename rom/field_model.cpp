@@ -1,6 +1,7 @@
 #include "rom/field_model.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "iga/core/error.h"
 #include "iga/core/log.h"
@@ -100,6 +101,61 @@ std::optional<CoefficientModel> with_parameters(const TensorDesign& design, cons
     return std::nullopt;
 }
 
+/// Of a factor: more are thinned out for the search of lengths.
+constexpr Eigen::Index most_points_searched = 400;
+
+/// Points and values of a design whose first factor has only so many of its points, evenly spread.
+struct Part {
+    TensorDesign design;
+    MatrixX values;
+};
+
+Part thinned(const TensorDesign& design, const MatrixX& values) {
+    const Eigen::Index n = design.factors[0].rows();
+    const Eigen::Index n_each = design.n_points() / n;
+    std::vector<Eigen::Index> rows;
+    std::vector<Eigen::Index> points;
+    for (Eigen::Index i = 0; i < most_points_searched; ++i) {
+        rows.push_back(i * n / most_points_searched);
+        for (Eigen::Index j = 0; j < n_each; ++j) points.push_back(rows.back() * n_each + j);
+    }
+    Part part{design, values(points, Eigen::all)};
+    part.design.factors[0] = design.factors[0](rows, Eigen::all);
+    return part;
+}
+
+struct SharedParameters {
+    Trend trend = Trend::constant;
+    KrigingParameters parameters;
+};
+
+/// Those of the trend with the least leave-one-out errors.
+SharedParameters shared_parameters(const Part& part, KrigingOptions options) {
+    constexpr Eigen::Index n_searched = 6;
+    const MatrixX values = part.values.leftCols(std::min(n_searched, part.values.cols()));
+    const std::vector<Trend> trends =
+        options.trend == Trend::automatic
+            ? std::vector<Trend>{Trend::constant, Trend::linear, Trend::quadratic}
+            : std::vector<Trend>{options.trend};
+    SharedParameters best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Trend trend : trends) {
+        options.trend = trend;
+        const int n_terms = n_trend_functions(trend, part.design.n_parameters());
+        if (trends.size() > 1 && trend != Trend::constant && 2 * n_terms > values.rows()) break;
+        const KrigingParameters parameters = most_likely_parameters(part.design, values, options);
+        const CoefficientModel model(
+            part.design, values, options,
+            std::vector<KrigingParameters>(static_cast<std::size_t>(values.cols()), parameters));
+        const double cost = model.leave_one_out().squaredNorm();
+        if (cost < least) {
+            least = cost;
+            best = {trend, parameters};
+        }
+    }
+    return best;
+}
+
 }  // namespace
 
 CoefficientModel learned_coefficients(const TensorDesign& design, const std::vector<int>& accepted,
@@ -115,6 +171,16 @@ CoefficientModel learned_coefficients(const TensorDesign& design, const std::vec
         const CoefficientModel part(accepted_design(design, points), values(complete, Eigen::all),
                                     options);
         if (auto model = with_parameters(left, values, options, part.parameters())) {
+            return std::move(*model);
+        }
+    }
+    if (left.factors[0].rows() > most_points_searched) {
+        const SharedParameters shared = shared_parameters(thinned(left, values), options);
+        KrigingOptions known = options;
+        known.trend = shared.trend;
+        const std::vector<KrigingParameters> all(static_cast<std::size_t>(values.cols()),
+                                                 shared.parameters);
+        if (auto model = with_parameters(left, values, known, all)) {
             return std::move(*model);
         }
     }

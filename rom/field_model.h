@@ -57,7 +57,9 @@ class FieldModel {
 
 /// Kriging of coefficients at the accepted points of a design. Where a design has holes its
 /// likelihood costs a hundred times more: lengths and nugget are then those of the complete part of
-/// it, if that is most of it.
+/// it, if that is most of it. Where its first factor has more than 400 points, all coefficients
+/// share the lengths and the nugget that are likeliest for the first of them at 400 of these
+/// points: a likelihood costs their number to the third power.
 ///
 /// @param accepted  positions among the points, rising
 /// @param values    n_accepted x n_coefficients, the largest coefficients first

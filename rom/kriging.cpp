@@ -1,6 +1,5 @@
 #include "rom/kriging.h"
 
-#include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -20,12 +19,6 @@ constexpr double longest_length = 20.0;
 constexpr double same_likelihood = 1e-7;
 constexpr double least_nugget = 1e-10;
 constexpr double largest_nugget = 1.0;
-/// Values that are constant but for rounding.
-constexpr double least_variance = std::numeric_limits<double>::min();
-
-/// Of trend functions that are left out: their coefficients are 0 and add nothing to variances.
-constexpr double weight_of_none = 1e300;
-
 /// First input of each factor.
 std::vector<int> offsets(const TensorDesign& design) {
     std::vector<int> first;
@@ -53,32 +46,6 @@ KrigingParameters to_parameters(const VectorX& logarithms, int n_inputs,
                                 const KrigingOptions& options) {
     return {logarithms.head(n_inputs).array().exp(),
             options.nugget ? *options.nugget : std::exp(logarithms[n_inputs])};
-}
-
-/// Trend by generalised least squares.
-struct LeastSquares {
-    MatrixX K_inverse_F;
-    MatrixX L;
-    VectorX beta;
-    VectorX weights;
-    double variance = 0.0;
-};
-
-LeastSquares least_squares(const CorrelationMatrix& K, const MatrixX& F, const VectorX& values) {
-    LeastSquares result;
-    result.K_inverse_F = K.solve(F);
-    MatrixX products = F.transpose() * result.K_inverse_F;
-    for (Eigen::Index j = 0; j < F.cols(); ++j) {
-        if (F.col(j).isZero(0.0)) products(j, j) = weight_of_none;
-    }
-    const Eigen::LLT<MatrixX> normal(products);
-    result.L = normal.matrixL();
-    result.beta = normal.solve(result.K_inverse_F.transpose() * values);
-    const VectorX residual = values - F * result.beta;
-    result.weights = K.solve(residual);
-    result.variance =
-        std::max(residual.dot(result.weights) / static_cast<double>(values.size()), least_variance);
-    return result;
 }
 
 void check(const TensorDesign& design, const VectorX& values, const KrigingOptions& options) {
@@ -136,38 +103,53 @@ Bounds search_bounds(const TensorDesign& design, const KrigingOptions& options) 
     return bounds;
 }
 
-/// As kriging_objective. @param F  trend functions at the points
-double objective(const TensorDesign& design, const MatrixX& F, const VectorX& values,
+/// As kriging_objective, the sum over all columns of values. @param F  trend functions at the
+/// points
+double objective(const TensorDesign& design, const MatrixX& F, const MatrixX& values,
                  const KrigingOptions& options, const VectorX& log_parameters, VectorX& gradient) {
     const int n_inputs = design.n_parameters();
     const KrigingParameters parameters = to_parameters(log_parameters, n_inputs, options);
     const std::vector<MatrixX> factors =
         correlation_factors(design, options.correlation, parameters.lengths);
-    const auto K = CorrelationMatrix::factored(factors, parameters.nugget, true);
+    auto factored = CorrelationMatrix::factored(factors, parameters.nugget, true);
     gradient = VectorX::Zero(log_parameters.size());
-    if (!K) {
+    if (!factored) {
         return std::numeric_limits<double>::infinity();
     }
-    const auto n = static_cast<double>(values.size());
-    const LeastSquares fit = least_squares(*K, F, values);
+    const KrigingSystem system(std::move(*factored), F);
+    const CorrelationMatrix& K = system.correlation_matrix();
+    std::vector<KrigingSystem::Fit> fits;
+    double value = 0.0;
+    for (Eigen::Index k = 0; k < values.cols(); ++k) {
+        fits.push_back(system.fit(values.col(k)));
+        value += 0.5 * (static_cast<double>(values.rows()) * std::log(fits.back().variance) +
+                        K.log_determinant());
+    }
     const std::vector<int> first = offsets(design);
     for (int g = 0; g < static_cast<int>(factors.size()); ++g) {
         const Eigen::Index n_g = design.factors[g].cols();
-        const MatrixX slope = K->likelihood_slope(g, fit.weights, fit.variance);
+        MatrixX slope = MatrixX::Zero(factors[g].rows(), factors[g].cols());
+        for (const KrigingSystem::Fit& fit : fits) {
+            slope += K.likelihood_slope(g, fit.weights, fit.variance);
+        }
         gradient.segment(first[g], n_g) = log_length_derivatives(
             options.correlation, design.factors[g], parameters.lengths.segment(first[g], n_g),
             slope.cwiseProduct(factors[g]));
     }
     if (!options.nugget) {
-        gradient[n_inputs] =
-            0.5 * parameters.nugget *
-            (K->inverse_diagonal().sum() - fit.weights.squaredNorm() / fit.variance);
+        const double trace = K.inverse_diagonal().sum();
+        for (const KrigingSystem::Fit& fit : fits) {
+            gradient[n_inputs] +=
+                0.5 * parameters.nugget * (trace - fit.weights.squaredNorm() / fit.variance);
+        }
     }
-    return 0.5 * (n * std::log(fit.variance) + K->log_determinant());
+    return value;
 }
 
-KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
-                              const KrigingOptions& options) {
+}  // namespace
+
+KrigingParameters most_likely_parameters(const TensorDesign& design, const MatrixX& values,
+                                         const KrigingOptions& options) {
     const Bounds bounds = search_bounds(design, options);
     const auto n = static_cast<int>(bounds.lower.size());
     const MatrixX starts = latin_hypercube_design(n, options.n_starts, options.seed);
@@ -188,8 +170,6 @@ KrigingParameters most_likely(const TensorDesign& design, const VectorX& values,
     return to_parameters(best.x, design.n_parameters(), options);
 }
 
-}  // namespace
-
 double kriging_objective(const TensorDesign& design, const VectorX& values,
                          const KrigingOptions& options, const VectorX& log_parameters,
                          VectorX& gradient) {
@@ -197,10 +177,25 @@ double kriging_objective(const TensorDesign& design, const VectorX& values,
                      log_parameters, gradient);
 }
 
+std::shared_ptr<const KrigingSystem> make_kriging_system(const TensorDesign& design,
+                                                         const KrigingOptions& options,
+                                                         const KrigingParameters& parameters) {
+    auto K = CorrelationMatrix::factored(
+        correlation_factors(design, options.correlation, parameters.lengths), parameters.nugget);
+    if (!K) {
+        throw InputError(
+            "Kriging: the correlation matrix of {} points is singular with a nugget of {}; points "
+            "coincide, or lengths are too long",
+            design.n_points(), parameters.nugget);
+    }
+    return std::make_shared<const KrigingSystem>(std::move(*K),
+                                                 independent_trend(design.points(), options.trend));
+}
+
 Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options)
     : design_(std::move(design)), options_(options) {
     check(design_, values, options_);
-    parameters_ = most_likely(design_, values, options_);
+    parameters_ = most_likely_parameters(design_, values, options_);
     fit(values);
 }
 
@@ -211,20 +206,19 @@ Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOption
     fit(values);
 }
 
+Kriging::Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options,
+                 KrigingParameters parameters, std::shared_ptr<const KrigingSystem> system)
+    : design_(std::move(design)),
+      options_(options),
+      parameters_(std::move(parameters)),
+      system_(std::move(system)) {
+    check(design_, values, options_);
+    fit(values);
+}
+
 void Kriging::fit(const VectorX& values) {
-    K_ = CorrelationMatrix::factored(
-        correlation_factors(design_, options_.correlation, parameters_.lengths),
-        parameters_.nugget);
-    if (!K_) {
-        throw InputError(
-            "Kriging: the correlation matrix of {} points is singular with a nugget of {}; points "
-            "coincide, or lengths are too long",
-            design_.n_points(), parameters_.nugget);
-    }
-    LeastSquares fit =
-        least_squares(*K_, independent_trend(design_.points(), options_.trend), values);
-    K_inverse_F_ = std::move(fit.K_inverse_F);
-    trend_factor_ = std::move(fit.L);
+    if (!system_) system_ = make_kriging_system(design_, options_, parameters_);
+    KrigingSystem::Fit fit = system_->fit(values);
     beta_ = std::move(fit.beta);
     weights_ = std::move(fit.weights);
     variance_ = fit.variance;
@@ -272,10 +266,8 @@ double Kriging::value(const VectorX& point) const {
 }
 
 double Kriging::variance(const VectorX& k, const VectorX& point) const {
-    const VectorX f = trend_functions(point.transpose(), options_.trend).row(0);
-    const VectorX u =
-        trend_factor_.triangularView<Eigen::Lower>().solve(K_inverse_F_.transpose() * k - f);
-    return variance_ * std::max(0.0, 1.0 - k.dot(K_->solve(k).col(0)) + u.squaredNorm());
+    return variance_ *
+           system_->relative_variance(k, trend_functions(point.transpose(), options_.trend).row(0));
 }
 
 double Kriging::variance(const VectorX& point) const {
@@ -307,18 +299,13 @@ Prediction Kriging::predict(const VectorX& point) const {
     return prediction;
 }
 
-VectorX Kriging::residual_diagonal() const {
-    const MatrixX G = trend_factor_.triangularView<Eigen::Lower>().solve(K_inverse_F_.transpose());
-    return K_->inverse_diagonal() - G.colwise().squaredNorm().transpose();
-}
-
 VectorX Kriging::leave_one_out() const {
     // With B = K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1, B y are the weights.
-    return weights_.cwiseQuotient(residual_diagonal());
+    return weights_.cwiseQuotient(system_->residual_diagonal());
 }
 
 VectorX Kriging::leave_one_out_variances() const {
-    return variance_ * residual_diagonal().cwiseInverse();
+    return variance_ * system_->residual_diagonal().cwiseInverse();
 }
 
 }  // namespace couture::rom

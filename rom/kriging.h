@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "iga/core/types.h"
 #include "rom/correlation.h"
-#include "rom/correlation_matrix.h"
+#include "rom/kriging_system.h"
 #include "rom/tensor_design.h"
 #include "rom/trend.h"
 
@@ -36,6 +37,8 @@ struct KrigingParameters {
     /// One for each input.
     VectorX lengths;
     double nugget = 0.0;
+
+    [[nodiscard]] bool operator==(const KrigingParameters&) const = default;
 };
 
 /// Minus the logarithm of the likelihood of values, trend and variance eliminated, without its
@@ -49,6 +52,21 @@ struct KrigingParameters {
 [[nodiscard]] double kriging_objective(const TensorDesign& design, const VectorX& values,
                                        const KrigingOptions& options, const VectorX& log_parameters,
                                        VectorX& gradient);
+
+/// Lengths and nugget at which the product of the likelihoods of several coefficients, each with a
+/// variance and a trend of its own, is largest.
+///
+/// @param values  n_points x n_coefficients
+/// @throws InputError  if points coincide and there is no nugget
+[[nodiscard]] KrigingParameters most_likely_parameters(const TensorDesign& design,
+                                                       const MatrixX& values,
+                                                       const KrigingOptions& options);
+
+/// K of the points of a design, and the trend there, factored.
+///
+/// @throws InputError  if K is singular
+[[nodiscard]] std::shared_ptr<const KrigingSystem> make_kriging_system(
+    const TensorDesign& design, const KrigingOptions& options, const KrigingParameters& parameters);
 
 /// A Gaussian process through values at the points of a design in the unit cube: trend and
 /// variance by generalised least squares, lengths and nugget by maximum likelihood. Designs that
@@ -64,6 +82,9 @@ class Kriging {
     /// With parameters that are known, e.g. from a file.
     Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options,
             KrigingParameters parameters);
+    /// With what models of other values at these points have made already.
+    Kriging(TensorDesign design, const VectorX& values, const KrigingOptions& options,
+            KrigingParameters parameters, std::shared_ptr<const KrigingSystem> system);
 
     [[nodiscard]] const KrigingParameters& parameters() const { return parameters_; }
     /// K^-1 (y - trend), one for each point of the design.
@@ -72,11 +93,8 @@ class Kriging {
     [[nodiscard]] const VectorX& trend_coefficients() const { return beta_; }
     /// Of the process, that correlations multiply.
     [[nodiscard]] double process_variance() const { return variance_; }
-    /// K, K^-1 F and L with L L^T = F^T K^-1 F, F being the trend functions at the points:
-    /// what variances are made of.
-    [[nodiscard]] const CorrelationMatrix& correlation_matrix() const { return *K_; }
-    [[nodiscard]] const MatrixX& K_inverse_F() const { return K_inverse_F_; }
-    [[nodiscard]] const MatrixX& trend_factor() const { return trend_factor_; }
+    /// What variances are made of; one object for all models that share it.
+    [[nodiscard]] const std::shared_ptr<const KrigingSystem>& system() const { return system_; }
     /// @param point  n_parameters values; outside the unit cube it extrapolates
     [[nodiscard]] Prediction predict(const VectorX& point) const;
     /// predict(point).value at little cost.
@@ -92,8 +110,6 @@ class Kriging {
 
   private:
     void fit(const VectorX& values);
-    /// Diagonal of K^-1 - K^-1 F (F^T K^-1 F)^-1 F^T K^-1.
-    [[nodiscard]] VectorX residual_diagonal() const;
     /// @param k  correlations of all points with the point
     [[nodiscard]] double variance(const VectorX& k, const VectorX& point) const;
     /// For each factor its points' correlations with a point.
@@ -102,10 +118,7 @@ class Kriging {
     TensorDesign design_;
     KrigingOptions options_;
     KrigingParameters parameters_;
-    std::optional<CorrelationMatrix> K_;
-    /// K^-1 F, factor F^T K^-1 F = L L^T, K^-1 (y - F beta).
-    MatrixX K_inverse_F_;
-    MatrixX trend_factor_;
+    std::shared_ptr<const KrigingSystem> system_;
     VectorX beta_;
     VectorX weights_;
     double variance_ = 0.0;

@@ -85,9 +85,8 @@ int check_on(const SolveOptions& options, const io::Deck& deck, const iga::Multi
         fmt::print("{}: valid; patches {}, unknowns {}\n", deck.path.filename().string(),
                    geometry.n_patches(), n_unknowns);
         if (plan) {
-            fmt::print("  {} geometries x {} loads x {} materials = {} snapshots\n",
-                       plan->n_geometries(), plan->n_loads(), plan->n_materials(),
-                       plan->n_snapshots());
+            fmt::print("  {} x {} loads x {} materials = {} snapshots\n", plan->geometries_text(),
+                       plan->n_loads(), plan->n_materials(), plan->n_snapshots());
         }
     }
     return ExitCode::done;

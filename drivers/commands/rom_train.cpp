@@ -50,6 +50,7 @@ void print_json(const RomSamples& samples, const io::SnapshotStore& store,
                                      {"signature", iga::signature(model.parts().reference)},
                                      {"unknowns", 3 * model.n_nodes()},
                                      {"geometries", samples.plan().n_geometries()},
+                                     {"projected", samples.plan().n_projected},
                                      {"loads", samples.plan().n_loads()},
                                      {"materials", samples.plan().n_materials()},
                                      {"solutions", made.n_solutions}};
@@ -77,7 +78,7 @@ void print_table(const RomSamples& samples, const io::SnapshotStore& store,
     const StoreProgress made = progress_of(samples.plan(), store);
     fmt::print("{}\n", samples.deck().title);
     const RomPlan& plan = samples.plan();
-    fmt::print("  {} geometries{}, {} unknowns; refused {}\n", plan.n_geometries(),
+    fmt::print("  {}{}, {} unknowns; refused {}\n", plan.geometries_text(),
                samples.is_geometry_only()
                    ? std::string(" without loads")
                    : fmt::format(" x {} loads x {} materials", plan.n_loads(), plan.n_materials()),

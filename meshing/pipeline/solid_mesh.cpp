@@ -292,10 +292,13 @@ bool add_elements(SolidMesh& solid, const LayoutCells& cells, const SolidMeshOpt
     return is_any;
 }
 
+bool is_folded(const LayoutVolume& volume) {
+    return volume.report.parameterization.validity != iga::Validity::valid;
+}
+
 bool is_poor(const LayoutVolume& volume) {
     constexpr double poor = 0.2;
-    return volume.report.parameterization.validity != iga::Validity::valid ||
-           volume.report.quality.min_scaled_jacobian < poor;
+    return is_folded(volume) || volume.report.quality.min_scaled_jacobian < poor;
 }
 
 // Moves the nodes of a poor volume on, each time by a tolerance ten times smaller, and keeps the
@@ -357,11 +360,16 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
 
     const bool adds_elements = chooses_elements && options.element_size == 0.0;
     constexpr int max_rounds = 8;
-    for (int round = 0;; ++round) {
-        say(round == 0 ? "mapping the surface" : "mapping the surface with more elements");
+    const auto map_surface = [&] {
         map_options.cell_lengths = wanted_lengths(solid.cuboids, cells);
         solid.map = make_layout_map(mesh, surface,
                                     cells_of_surface(surface.layout, cells, elements), map_options);
+    };
+    // Numbers of elements of the rounds before the last one.
+    std::vector<std::vector<int>> fewer;
+    for (int round = 0;; ++round) {
+        say(round == 0 ? "mapping the surface" : "mapping the surface with more elements");
+        map_surface();
         const int n_flipped = solid.map->report.n_flipped;
         if (n_flipped == 0) solid.mapped_quads = sample_layout_map(mesh, surface, *solid.map);
         if (options.last == SolidStage::map) return solid;
@@ -375,7 +383,12 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
         say("moving nodes");
         make_quads(solid, map_options.cell_lengths, options);
         if (options.last == SolidStage::quads) return solid;
-        if (!adds_elements || round == max_rounds || !add_elements(solid, cells, options)) break;
+        if (!adds_elements || round == max_rounds) break;
+        fewer.push_back(elements);
+        if (!add_elements(solid, cells, options)) {
+            fewer.pop_back();
+            break;
+        }
     }
 
     if (options.last == SolidStage::surfaces) {
@@ -387,6 +400,17 @@ SolidMesh mesh_solid(CuboidDecomposition cuboids, const SolidMeshOptions& option
     solid.volume = fit_volume(solid, options);
     if (chooses_elements && is_poor(*solid.volume))
         improve_volume(solid, map_options, options, say);
+    // Small elements fold beside sharp edges that no arc runs along, where large ones round them.
+    while (is_folded(*solid.volume) && !fewer.empty()) {
+        say("going back to fewer elements, as these fold");
+        solid.cuboids.record.elements = fewer.back();
+        fewer.pop_back();
+        map_surface();
+        if (solid.map->report.n_flipped > 0) continue;
+        solid.mapped_quads = sample_layout_map(mesh, surface, *solid.map);
+        make_quads(solid, map_options.cell_lengths, options);
+        solid.volume = fit_volume(solid, options);
+    }
     solid.distance = volume_distance(solid.volume->volume, solid.cuboids);
     if (options.last == SolidStage::volume) return solid;
 

@@ -104,9 +104,9 @@ class Reader {
         }
         at_ = 8;
         const std::int64_t version = integer();
-        if (version != 1) {
+        if (version != 2) {
             fail("is of version " + std::to_string(version) +
-                 ", this program reads version 1; export the model again or take the header of "
+                 ", this program reads version 2; export the model again or take the header of "
                  "that version");
         }
         const std::int64_t size = integer();
@@ -208,6 +208,8 @@ struct Kriging {
     Vector trend;
     Vector weights;
     double variance = 0.0;
+    /// An earlier coefficient that all below and the lengths are the same of; -1: none.
+    std::int64_t i_same = -1;
     /// One factor: of K; several: none.
     Vector cholesky;
     std::vector<Vector> eigenvectors;
@@ -260,6 +262,11 @@ class CoefficientModel {
             one.trend = reader.numbers(n_trend);
             one.weights = reader.numbers(n_points_);
             one.variance = reader.number();
+            one.i_same = reader.integer(-1, static_cast<std::int64_t>(k) - 1, "shared coefficient");
+            if (one.i_same >= 0) {
+                models_.push_back(std::move(one));
+                continue;
+            }
             if (n_factors == 1) {
                 one.cholesky = reader.numbers(reader.product(n_points_, n_points_));
             } else {
@@ -283,10 +290,12 @@ class CoefficientModel {
     Vector values(const Vector& unit_point) const {
         if (inputs_.empty()) return constants_;
         const Vector x = inputs_of(unit_point);
+        const Vector f = trend_functions(x);
         Vector result;
-        for (const Kriging& one : models_) {
-            const Vector k = correlations(one, x);
-            const Vector f = trend_functions(x);
+        Vector k;
+        for (std::size_t i = 0; i < models_.size(); ++i) {
+            const Kriging& one = models_[i];
+            if (!follows(i)) k = correlations(one, x);
             result.push_back(dot(f.data(), one.trend.data(), f.size()) +
                              dot(k.data(), one.weights.data(), k.size()));
         }
@@ -299,6 +308,11 @@ class CoefficientModel {
         const Vector f = trend_functions(x);
         Vector result;
         for (const Kriging& one : models_) {
+            if (one.i_same >= 0) {
+                const auto same = static_cast<std::size_t>(one.i_same);
+                result.push_back(result[same] / models_[same].variance * one.variance);
+                continue;
+            }
             const Vector k = correlations(one, x);
             Vector left(f.size());
             for (std::size_t t = 0; t < f.size(); ++t) {
@@ -315,6 +329,13 @@ class CoefficientModel {
     }
 
   private:
+    /// The coefficient has the correlations of the one before it.
+    bool follows(std::size_t i) const {
+        const auto first = [&](std::size_t j) {
+            return models_[j].i_same >= 0 ? models_[j].i_same : static_cast<std::int64_t>(j);
+        };
+        return i > 0 && first(i) == first(i - 1);
+    }
     Vector inputs_of(const Vector& unit_point) const {
         Vector x;
         for (std::size_t k = 0; k < inputs_.size(); ++k) {

@@ -56,13 +56,26 @@ function trendFunctions(model, point) {
   return Float64Array.of(1, ...point, ...trendPairs(model).map(([i, j]) => point[i] * point[j]));
 }
 
+/** For each coefficient the first one with the same lengths and nugget: correlations are shared. */
+function firstAlike(model) {
+  const n = model.inputs.length;
+  const seen = new Map();
+  return Array.from({ length: model.n_coefficients }, (_, k) => {
+    const key = [...model.lengths.slice(k * n, (k + 1) * n), model.nuggets[k]].join();
+    if (!seen.has(key)) seen.set(key, k);
+    return seen.get(key);
+  });
+}
+
 /** Coefficients at a point of the unit cube. */
 export function coefficients(model, point) {
   if (model.inputs.length === 0) return Float64Array.from(model.constants);
+  model.first_alike ??= firstAlike(model);
   const f = trendFunctions(model, point);
   const values = new Float64Array(model.n_coefficients);
+  let row;
   for (let k = 0; k < values.length; ++k) {
-    const row = productRow(correlations(model, k, point));
+    if (k === 0 || model.first_alike[k] !== model.first_alike[k - 1]) row = productRow(correlations(model, k, point));
     values[k] = dot(f, model.trends, k * f.length) + dot(row, model.weights, k * row.length);
   }
   return values;
@@ -192,12 +205,18 @@ function factored(model, k) {
 export function variances(model, point) {
   const values = new Float64Array(model.n_coefficients);
   if (model.inputs.length === 0) return values;
-  model.factorizations ??= Array.from(values, (_, k) => factored(model, k));
+  model.first_alike ??= firstAlike(model);
+  model.factorizations ??= Array.from(values, (_, k) => (model.first_alike[k] === k ? factored(model, k) : null));
   const f = trendFunctions(model, point);
+  const relative = new Float64Array(values.length);
   return values.map((_, k) => {
-    const { root, WF, L } = model.factorizations[k];
-    const Wk = root(correlations(model, k, point));
-    const u = forward(L, f.map((value, i) => dot(WF[i], Wk) - value));
-    return model.variances[k] * Math.max(0, 1 - dot(Wk, Wk) + dot(u, u));
+    const first = model.first_alike[k];
+    if (first === k) {
+      const { root, WF, L } = model.factorizations[k];
+      const Wk = root(correlations(model, k, point));
+      const u = forward(L, f.map((value, i) => dot(WF[i], Wk) - value));
+      relative[k] = Math.max(0, 1 - dot(Wk, Wk) + dot(u, u));
+    }
+    return model.variances[k] * relative[first];
   });
 }

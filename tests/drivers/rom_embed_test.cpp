@@ -219,8 +219,8 @@ TEST_CASE("rom: the evaluator refuses files that are not whole or of another ver
         CHECK_FALSE(error_of(changed).empty());
     }
     std::string newer = whole;
-    newer[8] = 2;
-    CHECK_THAT(error_of(newer), Contains("is of version 2, this program reads version 1"));
+    newer[8] = 3;
+    CHECK_THAT(error_of(newer), Contains("is of version 3, this program reads version 2"));
     CHECK_THAT(error_of("solid part"), Contains("is no model of 'couture rom export --binary'"));
     // What a checksum does not find: files that were written wrong.
     CHECK_THAT(error_of(with_checksum(whole.substr(0, whole.size() - 8))),

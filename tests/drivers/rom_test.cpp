@@ -198,6 +198,48 @@ TEST_CASE("rom: training that was killed at any moment goes on to the same bits"
     CHECK(n_killed >= n_moments / 2);
 }
 
+TEST_CASE("rom: projected displacements teach what more solutions would", "[drivers]") {
+    const TemporaryFolder folder;
+    const std::string few = model + "[rom]\ndesign = \"lhs\"\nsamples = 4\n";
+    io::write_text(folder.path() / "few.toml", few + parameters);
+    io::write_text(folder.path() / "f.toml", few + "projected = 9\n" + parameters);
+    const auto error_of = [&](const std::string& name) {
+        const Json trained = run_json("rom train " + name + ".toml --out " + name, folder.path());
+        CHECK(trained["refused"].empty());
+        return run_json("rom validate " + name + ".toml --out " + name + " -n 5",
+                        folder.path())["errors"]["displacement"]["mean"]
+            .get<double>();
+    };
+    CHECK(error_of("f") < 0.5 * error_of("few"));
+    // The same bits by one process, by shards that wait for each other, and killed.
+    const auto snapshots = contents(folder.path() / "f/snapshots");
+    const auto require_same = [&](const std::string& out) {
+        REQUIRE(run_couture("rom train f.toml --jobs 1 --out " + out, folder.path()).exit_code ==
+                0);
+        CHECK((contents(folder.path() / out / "snapshots") == snapshots));
+    };
+    require_same("one");
+    const auto shard = [&](const std::string& part) {
+        const auto run = run_couture("rom train f.toml --out s --shard " + part, folder.path());
+        REQUIRE(run.exit_code == 0);
+        return run.errors;
+    };
+    CHECK_THAT(shard("1/2"), Contains("wait for 6 solutions of other shards"));
+    CHECK_FALSE(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
+    CHECK_THAT(shard("2/2"), Contains("projecting onto"));
+    CHECK_FALSE(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
+    CHECK(fs::exists(folder.path() / "s/snapshots/solution_0005_00.h5"));
+    CHECK_THAT(shard("1/2"), Contains("projecting onto"));
+    CHECK(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
+    require_same("s");
+    for (const std::string moment : {"0.3", "0.8", "1.3"}) {
+        (void)run_couture("--version", folder.path(),
+                          "exec timeout -s KILL " + moment + " " + COUTURE_PROGRAM +
+                              " rom train f.toml --quiet --out k" + moment);
+        require_same("k" + moment);
+    }
+}
+
 TEST_CASE("rom: a killed process of several is named, and nothing is lost", "[drivers]") {
     const TemporaryFolder folder;
     io::write_text(folder.path() / "f.toml", deck);
@@ -343,6 +385,13 @@ TEST_CASE("rom: what is wrong is said before anything is solved", "[drivers]") {
     CHECK_THAT(error_of(model + "[rom]\ndesign = \"full\"\nsamples = 1\n" + parameters),
                Contains("f.toml") && Contains("the design has 1 geometry"));
     CHECK_THAT(error_of(deck, "rom validate f.toml --out none"), Contains("there is no model"));
+    const std::string projected = "[rom]\ndesign = \"full\"\nsamples = 3\nprojected = 2\n";
+    CHECK_THAT(error_of(model.substr(0, model.find("[[traction]]")) + projected +
+                        parameters.substr(0, parameters.find("[[rom.parameter]]\nname"))),
+               Contains("'projected': the deck has no loads"));
+    CHECK_THAT(
+        error_of(model + projected + parameters.substr(parameters.find("[[rom.parameter]]\nname"))),
+        Contains("'projected' adds geometries, but no parameter changes the geometry"));
 }
 
 TEST_CASE("rom: check says what would be solved, and where there are no members", "[drivers]") {

@@ -51,6 +51,28 @@ TEST_CASE("CoefficientModel: all at once are the kriging models one by one", "[r
     }
 }
 
+TEST_CASE("CoefficientModel: equal parameters share one matrix, and give the same", "[rom]") {
+    const auto kind = GENERATE(CorrelationKind::matern_5_2, CorrelationKind::gaussian);
+    const KrigingOptions options{.correlation = kind, .trend = Trend::linear};
+    const TensorDesign design = GENERATE(tensor_design(), TensorDesign{{tensor_design().points()}});
+    const KrigingParameters parameters{Vector3(0.7, 0.9, 1.1), 1e-8};
+    const CoefficientModel model(design, training(design), options,
+                                 {parameters, parameters, parameters});
+    CHECK(model.models()[0].system() == model.models()[2].system());
+    const VectorX values = model.values(somewhere);
+    const VectorX variances = model.variances(somewhere);
+    const MatrixX gradient = model.gradient(somewhere);
+    for (int k = 0; k < 3; ++k) {
+        const Kriging one(design, training(design).col(k), options, parameters);
+        const Prediction expected = one.predict(somewhere);
+        const double rounding = 1e-13 * one.weights().norm() + 1e-12;
+        CHECK(std::abs(values[k] - expected.value) < rounding);
+        CHECK(variances[k] == Approx(expected.variance).epsilon(1e-12));
+        CHECK((gradient.row(k).transpose() - expected.gradient).norm() < 100.0 * rounding);
+        CHECK(model.leave_one_out().col(k) == one.leave_one_out());
+    }
+}
+
 TEST_CASE("CoefficientModel: interpolates, and its gradient is that of its values", "[rom]") {
     // Lengths at which K is far from singular.
     const KrigingParameters parameters{VectorX::Constant(3, 0.5), 0.0};

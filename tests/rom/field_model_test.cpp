@@ -1,6 +1,7 @@
 #include "rom/field_model.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "iga/core/error.h"
@@ -163,4 +164,25 @@ TEST_CASE("FieldModel: standard errors of values", "[rom]") {
 TEST_CASE("FieldModel: refuses sizes that do not fit", "[rom]") {
     CHECK_THROWS_WITH(FieldModel(grid(), MatrixX::Ones(n_values, 5), mean, InnerProduct(3)),
                       Catch::Contains("5 fields of 30 values for a design of 12 points"));
+}
+
+TEST_CASE("learned_coefficients: of many points the coefficients share their lengths", "[rom]") {
+    const MatrixX points = sobol_design(3, 700);
+    const auto f = [](const VectorX& x) {
+        return VectorX(
+            Vector2(std::sin(2.0 * x[0]) * (1.0 + x[1]), 1.0 / (1.0 + x[0] + x[2] * x[1])));
+    };
+    MatrixX values(points.rows(), 2);
+    std::vector<int> accepted;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        values.row(i) = f(points.row(i).transpose()).transpose();
+        accepted.push_back(static_cast<int>(i));
+    }
+    const CoefficientModel model =
+        learned_coefficients({{points}}, accepted, values, {.trend = Trend::automatic});
+    CHECK(model.parameters()[0] == model.parameters()[1]);
+    CHECK(model.options().trend != Trend::automatic);
+    const VectorX somewhere = Vector3(0.21, 0.77, 0.43);
+    CHECK((model.values(somewhere) - f(somewhere)).norm() < 1e-4);
+    CHECK(model.leave_one_out().cwiseAbs().maxCoeff() < 1e-2);
 }

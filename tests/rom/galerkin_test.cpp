@@ -73,6 +73,28 @@ TEST_CASE("solve_galerkin: more modes, more of the energy", "[rom]") {
     }
 }
 
+TEST_CASE("projected_displacements: the full solution where the fields hold it, else near",
+          "[rom]") {
+    const VectorX there = somewhere();
+    const iga::Space<3> member(BoxFamily::geometry(there));
+    iga::Problem problem = BoxFamily::problem(there);
+    problem.resultants[0].load_case = "pull";
+    problem.resultants.push_back(problem.resultants[0]);
+    problem.resultants[1].load_case = "twice";
+    problem.resultants[1].force *= 2.0;
+    const VectorX full = BoxFamily::solve(there);
+    MatrixX fields = ReducedModel(family(), linear_trend).displacement_modes().leftCols(12);
+    const MatrixX near = projected_displacements(member, fields, problem);
+    REQUIRE(near.cols() == 2);
+    CHECK(relative_error(near.col(0), full) > 1e-6);
+    CHECK(relative_error(near.col(0), full) < 0.02);
+    CHECK(relative_error(near.col(1), 2.0 * near.col(0)) < 1e-12);
+    fields.col(3) = full;
+    CHECK(relative_error(projected_displacements(member, fields, problem).col(0), full) < 1e-8);
+    CHECK_THROWS_WITH(projected_displacements(member, fields.topRows(9), problem),
+                      Contains("fields of 9 values"));
+}
+
 TEST_CASE("solve_galerkin: prescribed displacements are held", "[rom]") {
     const ReducedModel model(family(), linear_trend);
     iga::Problem problem = BoxFamily::problem(somewhere());
