@@ -260,6 +260,19 @@ std::vector<std::string> names_of_faces_left(const NamedFaces& faces, const Surf
 }
 
 // Faces of the surface that no side of a cuboid belongs to.
+// Where the tolerance chose the elements.
+void warn_of_distance(const meshing::SolidMesh& solid, const meshing::SolidMeshOptions& options) {
+    if (!solid.distance || options.element_size > 0.0) return;
+    const double of_edges = 0.5 * options.tolerance;
+    if (solid.distance->surface <= options.tolerance && solid.distance->features <= of_edges) {
+        return;
+    }
+    log::warn(fmt::format(
+        "volume: splines are {:.2e} of the diagonal from the surface and {:.2e} from "
+        "its sharp edges, the tolerance asks for {:.2e} and {:.2e}",
+        solid.distance->surface, solid.distance->features, options.tolerance, of_edges));
+}
+
 void warn_of_lost_faces(const std::vector<std::string>& faces,
                         const std::map<std::string, std::vector<CuboidSide>>& sets) {
     std::vector<std::string> lost;
@@ -372,6 +385,7 @@ void run_mesh_stages(const io::MeshDeck& deck, const std::filesystem::path& prob
                 "volume: sharp edges that no arc runs along are rounded by {:.2e} of the diagonal",
                 stages.solid->distance->rounded));
         }
+        warn_of_distance(*stages.solid, solid);
         if (solid.faces) {
             warn_of_lost_faces(names_of_faces_left(*solid.faces, stages.mesh),
                                stages.solid->cuboids.volume.sets);
