@@ -80,12 +80,13 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
     if (!options.shard.empty()) {
         const auto [part, n_parts] = read_shard(options.shard);
         fill_store(samples, reference, store, part - 1, n_parts);
-        const int n_unsolved = progress_of(samples.plan(), store).n_unsolved;
-        if (samples.plan().n_projected > 0 && n_unsolved > 0) {
-            log::info(
-                fmt::format("rom: projected displacements wait for {} solutions of other "
-                            "shards; then start the shards again",
-                            n_unsolved));
+        const StoreProgress made = progress_of(samples.plan(), store);
+        if (samples.plan().n_projected > 0 && made.n_missing > 0) {
+            const std::string others =
+                made.n_unsolved > 0
+                    ? fmt::format(", after the {} solutions of other shards", made.n_unsolved)
+                    : "";
+            log::info("rom: start the shards again for displacements that are projected" + others);
         }
         return false;
     }
@@ -99,17 +100,17 @@ bool run_campaign(const RomTrainOptions& options, const CommonOptions& common, R
                     "unknowns, {} at once",
                     plan.geometries_text(), plan.n_loads(), plan.n_materials(), plan.n_snapshots(),
                     3 * reference.n_dofs(), n_jobs));
-    if (n_jobs > 1) {
-        const Progress progress(plan, store);
-        const auto run = [&] {
+    const auto fill = [&] {
+        if (n_jobs > 1) {
+            const Progress progress(plan, store);
             run_shards(options, n_jobs, n_threads, command, [&] { progress.report(); });
-        };
-        run();
-        // What is projected waits for all that is solved.
-        if (plan.n_projected > 0 && progress_of(plan, store).n_missing > 0) run();
-    } else {
-        fill_store(samples, reference, store, 0, 1);
-    }
+        } else {
+            fill_store(samples, reference, store, 0, 1);
+        }
+    };
+    fill();
+    // What is projected waits for all that is solved.
+    if (plan.n_projected > 0 && progress_of(plan, store).n_missing > 0) fill();
     // All is made, nobody writes any more.
     io::remove_leftovers(store.folder(), "");
     for (const RefusedSample& one : refused_samples(plan, store)) {

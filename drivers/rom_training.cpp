@@ -216,16 +216,15 @@ void fill_store(RomSamples& samples, const iga::Space<3>& reference, io::Snapsho
             make(g);
         }
     };
-    for_own(false, [&](int g) { make_solutions(g, {}); });
-    if (plan.n_projected == 0) return;
     const StoreProgress made = progress_of(plan, store);
+    if (made.n_missing == 0) return;
     if (made.n_unsolved > 0) {
+        for_own(false, [&](int g) { make_solutions(g, {}); });
         for_own(true, [&](int g) {
             if (make_geometry(samples, reference, store, g, signature)) progress.report();
         });
         return;
     }
-    if (made.n_missing == 0) return;
     const MatrixX fields = projection_fields(samples, reference, store, signature);
     log::info(fmt::format("rom: projecting onto {} modes of the solutions", fields.cols()));
     for_own(true, [&](int g) { make_solutions(g, fields); });

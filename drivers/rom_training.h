@@ -56,8 +56,7 @@ class Progress {
 
 /// Makes what a store lacks of the geometries `i_first`, `i_first + stride`, ...: those that can't
 /// be meshed or solved are noted there as refused, and the others go on. Displacements that are
-/// projected are made if all those that are solved are there when it begins, or if it makes the
-/// last of them.
+/// projected are made by another call, when all those that are solved are there.
 ///
 /// @param reference  the space of the reference member
 /// @throws FileError  if a result can't be written: all before it is kept

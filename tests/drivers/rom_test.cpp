@@ -224,11 +224,9 @@ TEST_CASE("rom: projected displacements teach what more solutions would", "[driv
         REQUIRE(run.exit_code == 0);
         return run.errors;
     };
-    CHECK_THAT(shard("1/2"), Contains("wait for 6 solutions of other shards"));
+    CHECK_THAT(shard("1/2"), Contains("after the 6 solutions of other shards"));
+    CHECK_THAT(shard("2/2"), Contains("start the shards again") && !Contains("other shards"));
     CHECK_FALSE(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
-    CHECK_THAT(shard("2/2"), Contains("projecting onto"));
-    CHECK_FALSE(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
-    CHECK(fs::exists(folder.path() / "s/snapshots/solution_0005_00.h5"));
     CHECK_THAT(shard("1/2"), Contains("projecting onto"));
     CHECK(fs::exists(folder.path() / "s/snapshots/solution_0004_00.h5"));
     require_same("s");
